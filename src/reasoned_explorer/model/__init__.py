@@ -1,0 +1,44 @@
+"""The nouns that all rooms share, and the errors."""
+
+from reasoned_explorer.model.answer import LIKERT_LEVELS, Assessment, Verdict, likert_from_score
+from reasoned_explorer.model.errors import (
+    Fault,
+    GoalError,
+    InputError,
+    MissingDependencyError,
+    PartError,
+    ReasonedExplorerError,
+    RecordError,
+    SettingsError,
+    StartError,
+    UnknownNameError,
+    WorldError,
+)
+from reasoned_explorer.model.goal import Goal
+from reasoned_explorer.model.track import Leg, LegOutcome, TrackPoint
+from reasoned_explorer.model.view import Camera, Scene, View
+
+__all__ = [
+    "LIKERT_LEVELS",
+    "Assessment",
+    "Camera",
+    "Fault",
+    "Goal",
+    "GoalError",
+    "InputError",
+    "Leg",
+    "LegOutcome",
+    "MissingDependencyError",
+    "PartError",
+    "ReasonedExplorerError",
+    "RecordError",
+    "Scene",
+    "SettingsError",
+    "StartError",
+    "TrackPoint",
+    "UnknownNameError",
+    "Verdict",
+    "View",
+    "WorldError",
+    "likert_from_score",
+]
