@@ -10,6 +10,8 @@ import time
 from collections.abc import Coroutine
 from typing import Any, Protocol, TypeVar
 
+from reasoned_explorer.clock.virtual_loop import VirtualEventLoop
+
 T = TypeVar("T")
 
 
@@ -34,8 +36,8 @@ class Clock(Protocol):
 class VirtualClock:
     """The clock jumps to the next thing that happens; nothing waits and nothing real may be awaited.
 
-    Two calls that start together and take 3 and 5 seconds end at 3 and 5: the event loop's own time is virtual
-    (looptime), so time-outs and cancellation work as on a real clock.
+    Two calls that start together and take 3 and 5 seconds end at 3 and 5: the event loop's own time is virtual, so
+    time-outs and cancellation work as on a real clock.
     """
 
     name = "virtual"
@@ -58,9 +60,7 @@ class VirtualClock:
 
     def run(self, mission: Coroutine[Any, Any, T]) -> T:
         """Run a mission in virtual time."""
-        import looptime  # noqa: PLC0415 - a cheap root import
-
-        with asyncio.Runner(loop_factory=looptime.new_event_loop) as runner:
+        with asyncio.Runner(loop_factory=VirtualEventLoop) as runner:
             self._loop = runner.get_loop()
             self._start_s = self._loop.time()
             return runner.run(mission)

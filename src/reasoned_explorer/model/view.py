@@ -51,6 +51,7 @@ class Scene:
             says so in its name, does).
         depth: 0 for a described scene, 1 and more for an imagined one.
         fault: Why there is no description, or None.
+        viewpoint: Where the camera stood; like the waypoint, not for minds.
     """
 
     text: str
@@ -58,3 +59,4 @@ class Scene:
     waypoint: Pose
     depth: int = 0
     fault: str | None = None
+    viewpoint: Pose | None = None

@@ -1,0 +1,142 @@
+"""A mission's record on disk: one JSON line for the header, one for each step as it ends, one for the summary.
+
+A record whose process was killed, or whose disk ran full, ends at its last whole step; reading it gives the steps that
+there are and no summary. Nothing in a record depends on wall time or on where it is kept, so that the same mission
+writes the same bytes.
+"""
+
+import json
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from reasoned_explorer.model import Fault, RecordError
+from reasoned_explorer.model.record import RECORD_SCHEMA, EpisodeRecord, MissionHeader, MissionSummary, StepRecord
+
+RECORD_NAME = "record.jsonl"
+
+_HEADER = TypeAdapter(MissionHeader)
+_STEP = TypeAdapter(StepRecord)
+_SUMMARY = TypeAdapter(MissionSummary)
+
+
+class RecordWriter:
+    """Writes a record while the mission runs; a context manager.
+
+    Args:
+        folder: Of the record; made where it is not there. It must not hold a record already.
+
+    Raises:
+        RecordError: If the folder cannot be made or holds a record; and from each write that fails (a full disk).
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.path = folder / RECORD_NAME
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            self._file = self.path.open("xb")
+        except FileExistsError as error:
+            fault = Fault(f"{self.path} is there already", "a folder without a record", "give another folder")
+            raise RecordError("record", [fault]) from error
+        except OSError as error:
+            raise _write_error(self.path, error) from error
+
+    def header(self, header: MissionHeader) -> None:
+        """Write the first line."""
+        self._line(b"header", _HEADER.dump_json(header))
+
+    def step(self, step: StepRecord) -> None:
+        """Write one step."""
+        self._line(b"step", _STEP.dump_json(step))
+
+    def summary(self, summary: MissionSummary) -> None:
+        """Write the last line."""
+        self._line(b"summary", _SUMMARY.dump_json(summary))
+
+    def close(self) -> None:
+        """Close the file; safe to call twice."""
+        self._file.close()
+
+    def __enter__(self) -> "RecordWriter":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _line(self, kind: bytes, payload: bytes) -> None:
+        try:
+            self._file.write(b'{"' + kind + b'":' + payload + b"}\n")
+            # Handed to the system line by line: a killed process loses the step that it was in and no other.
+            self._file.flush()
+        except (OSError, ValueError) as error:
+            raise _write_error(self.path, error) from error
+
+
+def read_record(folder: Path) -> EpisodeRecord:
+    """Return the record in a folder (or the record file itself).
+
+    A last line that was cut off is left out.
+
+    Raises:
+        RecordError: If there is no record, it is of another version, or a line other than the last is broken.
+    """
+    path = folder / RECORD_NAME if folder.is_dir() else folder
+    try:
+        lines = path.read_bytes().split(b"\n")
+    except OSError as error:
+        fault = Fault(f"{path}: {error.strerror}", "the folder of a run", "rex run leaves one")
+        raise RecordError("record", [fault]) from error
+    # After a whole last line comes an empty rest; anything else was cut off.
+    whole = lines[:-1]
+    if not whole:
+        raise RecordError("record", [Fault(f"{path} is empty or cut off in its first line", "a header line")])
+    header: MissionHeader | None = None
+    summary: MissionSummary | None = None
+    steps: list[StepRecord] = []
+    for number, line in enumerate(whole, start=1):
+        kind, payload = _parsed(path, number, line)
+        try:
+            if number == 1:
+                header = _read_header(path, kind, payload)
+            elif kind == "step" and summary is None:
+                steps.append(_STEP.validate_python(payload))
+            elif kind == "summary" and summary is None:
+                summary = _SUMMARY.validate_python(payload)
+            else:
+                raise _line_error(path, number, f"holds {kind!r}", "a step, then one summary at the end")
+        except ValidationError as error:
+            raise _line_error(path, number, f"{error.error_count()} faults, {error.errors()[0]['msg']}", kind) from error
+    if header is None:
+        raise _line_error(path, 1, "holds no header", "a header")
+    return EpisodeRecord(header, tuple(steps), summary)
+
+
+def _parsed(path: Path, number: int, line: bytes) -> tuple[str, Any]:
+    try:
+        entry = json.loads(line)
+    except ValueError as error:
+        raise _line_error(path, number, f"is not JSON ({error})", "one JSON object a line") from error
+    if not isinstance(entry, dict) or len(entry) != 1:
+        raise _line_error(path, number, "is not an object with one key", '{"step": …}')
+    return next(iter(entry.items()))
+
+
+def _read_header(path: Path, kind: str, payload: Any) -> MissionHeader:
+    schema = payload.get("schema") if kind == "header" and isinstance(payload, dict) else None
+    if schema != RECORD_SCHEMA:
+        raise _line_error(path, 1, f"is {kind!r} of version {schema}", f"a header of version {RECORD_SCHEMA}")
+    return _HEADER.validate_python(payload)
+
+
+def _line_error(path: Path, number: int, what: str, expected: str) -> RecordError:
+    return RecordError("record", [Fault(f"{path}, line {number} {what}", expected)])
+
+
+def _write_error(path: Path, error: Exception) -> RecordError:
+    reason = error.strerror if isinstance(error, OSError) else str(error)
+    fault = Fault(f"{path} cannot be written: {reason}", "a folder with room that can be written to")
+    return RecordError("record", [fault])

@@ -1,0 +1,353 @@
+"""The agent's loop: look, describe, imagine and check at the same time, remember, choose, travel."""
+
+import asyncio
+import contextlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from reasoned_explorer.clock import Clock
+from reasoned_explorer.exploration.draft import LookDraft, StepDraft
+from reasoned_explorer.exploration.graph import Choice, Frontier, FrontierState, TopologicalGraph
+from reasoned_explorer.exploration.settings import ExplorerSettings
+from reasoned_explorer.geometry import Pose, normalise_heading_rad
+from reasoned_explorer.minds.ledger import Ledger
+from reasoned_explorer.minds.mind import GoalChecker
+from reasoned_explorer.model import Goal, LegOutcome, PartError, Scene, Verdict, View
+from reasoned_explorer.model.record import CallKept, MissionEnd, StepRecord
+from reasoned_explorer.perception import Captioner
+from reasoned_explorer.planning import FrontierScore, Plan, Planner
+from reasoned_explorer.vehicles import Vehicle
+
+#: A leg that came less far than this ended where it began: looking again from there would show the same.
+_NOWHERE_M = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """What an explorer is made of.
+
+    Attributes:
+        vehicle: Looks and moves.
+        captioner: Says what views show.
+        planner: Scores frontiers.
+        checker: Notices the goal.
+        clock: Mission time.
+        ledger: Where the parts write their calls.
+    """
+
+    vehicle: Vehicle
+    captioner: Captioner
+    planner: Planner
+    checker: GoalChecker
+    clock: Clock
+    ledger: Ledger
+
+
+@dataclass(slots=True)
+class Exploration:
+    """How an exploration ended.
+
+    Attributes:
+        end: How.
+        reason: In words.
+        ct_s: Every second of waiting for a decision.
+        tt_s: Every second of looking and travelling.
+        plan_s: The planner's share of CT.
+        steps: Steps made.
+    """
+
+    end: MissionEnd
+    reason: str
+    ct_s: float
+    tt_s: float
+    plan_s: float
+    steps: int
+
+
+@dataclass(slots=True)
+class Explorer:
+    """The agent, written once against a vehicle and a clock.
+
+    Attributes:
+        parts: What it is made of.
+        settings: How it explores.
+        on_step: Called with the record of each step as soon as the step is over.
+        graph: What it remembers.
+    """
+
+    parts: Parts
+    settings: ExplorerSettings = field(default_factory=ExplorerSettings)
+    on_step: Callable[[StepRecord], None] = lambda record: None
+    graph: TopologicalGraph = field(init=False)
+    _point: int = field(init=False, default=0)
+    _turn_rad: float = field(init=False, default=0.0)
+    _looks_around: dict[int, int] = field(init=False, default_factory=dict)
+    _look_next: bool = field(init=False, default=True)
+    _faults_in_a_row: int = field(init=False, default=0)
+    _ct_s: float = field(init=False, default=0.0)
+    _tt_s: float = field(init=False, default=0.0)
+    _plan_s: float = field(init=False, default=0.0)
+    _calls_kept: int = field(init=False, default=0)
+
+    def __post_init__(self) -> None:
+        self.graph = TopologicalGraph(
+            self.settings.merge_radius_m, self.settings.sharpness_per_m, self.settings.half_distance_m
+        )
+
+    async def run(self, goal: Goal) -> Exploration:
+        """Explore until the goal is declared found, the time or budget is over, nothing is left, or a part fails.
+
+        Faults of parts are outcomes, not exceptions; only cancellation and programming errors come out.
+        """
+        try:
+            async with self.parts.vehicle:
+                self._point = self.graph.add_point(self.parts.vehicle.pose)
+                return await self._loop(goal)
+        except PartError as fault:
+            # Only starting and closing the vehicle can get here.
+            return self._ended(MissionEnd.FAULT, str(fault), steps=0)
+
+    async def _loop(self, goal: Goal) -> Exploration:
+        for number in range(self.settings.max_steps):
+            step = StepDraft(number, self.parts.clock.now_s(), self.parts.vehicle.pose, self._point)
+            ended = await self._advance(goal, step)
+            self._close_step(step)
+            if ended is None and self._faults_in_a_row >= self.settings.max_faults_in_a_row:
+                ended = MissionEnd.FAULT, step.notes[-1]
+            if ended is not None:
+                return self._ended(*ended, steps=number + 1)
+        return self._ended(MissionEnd.BUDGET_SPENT, f"{self.settings.max_steps} steps", steps=self.settings.max_steps)
+
+    def _ended(self, end: MissionEnd, reason: str, *, steps: int) -> Exploration:
+        return Exploration(end, reason, self._ct_s, self._tt_s, self._plan_s, steps)
+
+    def _close_step(self, step: StepDraft) -> None:
+        self._faults_in_a_row = self._faults_in_a_row + 1 if step.faults else 0
+        self._ct_s += step.think_s
+        self._tt_s += step.look_s + step.travel_s
+        self._plan_s += step.plan_s
+        calls = self.parts.ledger.since(self._calls_kept)
+        self._calls_kept += len(calls)
+        kept = [
+            CallKept(
+                role=call.role,
+                model=call.model,
+                key=tuple(call.key),
+                started_s=round(call.started_s, 6),
+                latency_s=round(call.latency_s, 6),
+                tokens_in=call.tokens_in,
+                tokens_out=call.tokens_out,
+                usd=call.usd,
+                cached=call.cached,
+                retries=call.retries,
+                fault=call.fault,
+            )
+            for call in calls
+        ]
+        self.on_step(step.freeze(ended_s=self.parts.clock.now_s(), ct_s=self._ct_s, tt_s=self._tt_s, calls=kept))
+
+    async def _advance(self, goal: Goal, step: StepDraft) -> tuple[MissionEnd, str] | None:
+        """Make one step; return how the mission ended if it did."""
+        if self._look_next:
+            found = await self._look_and_think(goal, step)
+            if found is not None:
+                return found
+        self._look_next = True
+        if self._time_is_over():
+            return self._time_over()
+        step.choice = self.graph.choose(self.parts.vehicle.pose)
+        if step.choice is None:
+            return self._look_elsewhere(step)
+        await self._travel(step, step.choice)
+        return self._time_over() if self._time_is_over() else None
+
+    def _time_is_over(self) -> bool:
+        return self.parts.clock.now_s() >= self.settings.t_max_s
+
+    def _time_over(self) -> tuple[MissionEnd, str]:
+        return MissionEnd.TIME_OVER, f"T_max of {self.settings.t_max_s:g} s is over"
+
+    # Look, describe, imagine, check.
+
+    async def _look_and_think(self, goal: Goal, step: StepDraft) -> tuple[MissionEnd, str] | None:
+        look = await self._look(goal, step, self.settings.bearings_rad(self._turn_rad))
+        if look is None:
+            return None
+        started_s, looked_s = self.parts.clock.now_s(), step.look_s
+        planning = asyncio.ensure_future(self._plan(goal, look.scenes, step))
+        try:
+            evidence = await self._check(goal, look, step)
+            if evidence is not None:
+                # The robot is there; what is still being imagined is no longer needed.
+                await _cancel(planning)
+                if self._time_is_over():
+                    return self._time_over()
+                return MissionEnd.FOUND, evidence
+            step.plan = await planning
+        finally:
+            await _cancel(planning)
+            # Looking once more to make sure is acting, not thinking.
+            step.think_s += self.parts.clock.now_s() - started_s - (step.look_s - looked_s)
+        look.scores = step.plan.scores
+        self._expand(goal, look, step)
+        return None
+
+    async def _look(self, goal: Goal, step: StepDraft, bearings_rad: Sequence[float]) -> LookDraft | None:
+        """Look in some bearings and describe what is seen; None, with a note, where the camera gave nothing."""
+        heading_rad = self.parts.vehicle.pose.heading_rad
+        headings = [normalise_heading_rad(heading_rad + bearing_rad) for bearing_rad in bearings_rad]
+        started_s = self.parts.clock.now_s()
+        try:
+            views = await self.parts.vehicle.look(headings)
+        except PartError as fault:
+            self._note_fault(step, fault)
+            return None
+        finally:
+            step.look_s += self.parts.clock.now_s() - started_s
+        started_s = self.parts.clock.now_s()
+        scenes = await self._describe(goal, views, step)
+        step.think_s += self.parts.clock.now_s() - started_s
+        look = LookDraft(scenes)
+        step.looks.append(look)
+        return look
+
+    async def _describe(self, goal: Goal, views: Sequence[View], step: StepDraft) -> list[Scene]:
+        texts: Sequence[str]
+        fault_text = None
+        try:
+            texts = await self.parts.captioner.describe(goal, views)
+        except PartError as fault:
+            self._note_fault(step, fault)
+            texts, fault_text = [""] * len(views), str(fault)
+        nominal_m = self.settings.step_range_m(goal.level)[0]
+        number = len(step.looks)
+        return [
+            Scene(text, (step.step, number, index), view.pose.ahead(nominal_m), 0, fault_text, view.pose)
+            for index, (view, text) in enumerate(zip(views, texts, strict=True))
+        ]
+
+    async def _plan(self, goal: Goal, scenes: Sequence[Scene], step: StepDraft) -> Plan:
+        started_s = self.parts.clock.now_s()
+        try:
+            return await self.parts.planner.plan(goal, scenes)
+        except PartError as fault:
+            self._note_fault(step, fault)
+            return Plan(tuple(FrontierScore(None, fault=str(fault)) for _ in scenes))
+        finally:
+            step.plan_s += self.parts.clock.now_s() - started_s
+
+    async def _check(self, goal: Goal, look: LookDraft, step: StepDraft) -> str | None:
+        """Return the evidence where the goal is seen within reach, look after look; None where it is not."""
+        best = await self._verdict(goal, look, step)
+        for _ in range(self.settings.looks_to_confirm - 1):
+            if best is None:
+                return None
+            index, _verdict = best
+            viewpoint = look.scenes[index].viewpoint or look.scenes[index].waypoint
+            bearing_rad = viewpoint.heading_rad - self.parts.vehicle.pose.heading_rad
+            thought_s = step.think_s
+            again = await self._look(goal, step, [bearing_rad])
+            # Describing it ran while the caller's own clock of thinking did: count it once.
+            step.think_s = thought_s
+            if again is None:
+                return None
+            look = again
+            best = await self._verdict(goal, look, step)
+            if best is None:
+                step.notes.append("goal seen, but not in the second look")
+        return best[1].evidence or "seen within reach" if best else None
+
+    async def _verdict(self, goal: Goal, look: LookDraft, step: StepDraft) -> tuple[int, Verdict] | None:
+        asked = [index for index, scene in enumerate(look.scenes) if scene.fault is None]
+        try:
+            answers = await self.parts.checker.check(goal, [look.scenes[index] for index in asked])
+        except PartError as fault:
+            self._note_fault(step, fault)
+            return None
+        verdicts = [Verdict(False, 0.0, fault=scene.fault) for scene in look.scenes]
+        for index, verdict in zip(asked, answers, strict=True):
+            verdicts[index] = verdict
+        look.verdicts = verdicts
+        found = [(-verdict.confidence, index) for index, verdict in enumerate(verdicts) if verdict.found]
+        return (min(found)[1], verdicts[min(found)[1]]) if found else None
+
+    # Remember, choose, travel.
+
+    def _expand(self, goal: Goal, look: LookDraft, step: StepDraft) -> None:
+        for scene, score in zip(look.scenes, look.scores, strict=True):
+            viewpoint = scene.viewpoint or scene.waypoint
+            pose = viewpoint.ahead(self.settings.step_m(score.q, goal.level))
+            blocked_by = "the way ahead is blocked" if score.blocked else ""
+            frontier = self.graph.add_frontier(
+                self._point, pose, score.q, forbidden=score.forbidden, blocked_by=blocked_by
+            )
+            visited = self.graph.nearest_point(pose.x_m, pose.y_m, self.settings.revisit_radius_m)
+            if frontier.state is FrontierState.OPEN and visited not in (None, self._point):
+                self.graph.give_up(frontier, "already visited")
+            look.frontiers.append(frontier.id)
+            step.touched[frontier.id] = frontier
+
+    def _look_elsewhere(self, step: StepDraft) -> tuple[MissionEnd, str] | None:
+        """With nothing in the buffer: look behind and in between before giving up."""
+        if step.faults:
+            return None  # nothing was seen; the next step looks again
+        tried = self._looks_around.get(self._point, 0)
+        turns = self.settings.other_turns_rad()
+        if tried >= len(turns):
+            return MissionEnd.NOTHING_LEFT, "every frontier is visited, blocked or given up"
+        self._looks_around[self._point] = tried + 1
+        self._turn_rad = turns[tried]
+        step.notes.append("nothing left in the buffer: looking elsewhere")
+        return None
+
+    async def _travel(self, step: StepDraft, choice: Choice) -> None:
+        frontier = choice.frontier
+        self.graph.take(frontier)
+        step.touched[frontier.id] = frontier
+        route = self.graph.route(self._point, frontier)
+        self._turn_rad = 0.0
+        for target in _facing_onwards(route):
+            if not await self._leg(step, frontier, target):
+                break
+            self._point = self.graph.add_point(self.parts.vehicle.pose, previous=self._point)
+
+    async def _leg(self, step: StepDraft, frontier: Frontier, target: Pose) -> bool:
+        """Travel one leg; return whether it arrived. A leg that does not is given up with its reason."""
+        started_s = self.parts.clock.now_s()
+        try:
+            leg = await self.parts.vehicle.go_to(target)
+        except PartError as fault:
+            self._note_fault(step, fault)
+            self.graph.give_up(frontier, str(fault))
+            return False
+        finally:
+            step.travel_s += self.parts.clock.now_s() - started_s
+        step.legs.append(leg)
+        if leg.outcome is LegOutcome.ARRIVED:
+            return True
+        reason = f"{leg.outcome.value}: {leg.detail}" if leg.detail else leg.outcome.value
+        self.graph.give_up(frontier, reason)
+        step.notes.append(f"frontier {frontier.id} given up: {reason}")
+        self._look_next = leg.length_m >= _NOWHERE_M
+        if self._look_next:
+            self._point = self.graph.add_point(self.parts.vehicle.pose, previous=self._point)
+        return False
+
+    def _note_fault(self, step: StepDraft, fault: PartError) -> None:
+        step.faults += 1
+        step.notes.append(f"fault: {fault}")
+
+
+def _facing_onwards(route: list[Pose]) -> list[Pose]:
+    """Return the route's waypoints, each but the last facing the next."""
+    turned = []
+    for here, there in zip(route, route[1:], strict=False):
+        turned.append(here.facing(here.heading_rad + here.bearing_to_rad(there.x_m, there.y_m)))
+    return [*turned, route[-1]] if route else []
+
+
+async def _cancel(task: "asyncio.Future[Plan]") -> None:
+    if not task.done():
+        task.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await task

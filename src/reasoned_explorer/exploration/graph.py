@@ -1,0 +1,173 @@
+"""The topological graph: path points, the edges between them, and the buffer of frontiers (paper, section IV-A)."""
+
+import heapq
+import math
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from reasoned_explorer.exploration.penalty import distance_penalty
+from reasoned_explorer.geometry import Pose
+
+
+class FrontierState(StrEnum):
+    """What has become of a frontier."""
+
+    OPEN = "open"
+    VISITED = "visited"
+    GIVEN_UP = "given up"
+    BLOCKED = "blocked"
+
+
+@dataclass(slots=True)
+class Frontier:
+    """A place one step beyond a path point that was scored and can be gone to.
+
+    Attributes:
+        id: Rising in the order of discovery.
+        parent: The path point that it was seen from.
+        pose: Where it is, facing away from its parent.
+        q: Its score, or None where no answer could be had (such a frontier is gone to last).
+        forbidden: Its ground is shunned by the goal; gone to only when nothing else is left.
+        state: What has become of it.
+        reason: Why it was given up or is blocked.
+    """
+
+    id: int
+    parent: int
+    pose: Pose
+    q: float | None
+    forbidden: bool = False
+    state: FrontierState = FrontierState.OPEN
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """The frontier with the highest Q − σ(d).
+
+    Attributes:
+        frontier: The frontier.
+        distance_m: d, metres.
+        penalty: σ(d).
+        value: Q − σ(d), rounded to 1e-4; None where Q is missing.
+    """
+
+    frontier: Frontier
+    distance_m: float
+    penalty: float
+    value: float | None
+
+
+@dataclass(slots=True)
+class TopologicalGraph:
+    """Where the robot has been, and where it could go.
+
+    Attributes:
+        merge_radius_m: A path point this near to an older one is that one.
+        sharpness_per_m: k of σ(d).
+        half_distance_m: d0 of σ(d).
+    """
+
+    merge_radius_m: float = 1.5
+    sharpness_per_m: float = 0.5
+    half_distance_m: float = 60.0
+    points: list[Pose] = field(default_factory=list)
+    edges: dict[int, dict[int, float]] = field(default_factory=dict)
+    frontiers: list[Frontier] = field(default_factory=list)
+    _open: dict[int, Frontier] = field(default_factory=dict)
+
+    def add_point(self, pose: Pose, *, previous: int | None = None) -> int:
+        """Return the path point at a pose, made or (within the merge radius) found, joined to the previous one."""
+        index = self.nearest_point(pose.x_m, pose.y_m, self.merge_radius_m)
+        if index is None:
+            index = len(self.points)
+            self.points.append(pose)
+            self.edges[index] = {}
+        if previous is not None and previous != index:
+            length_m = self.points[previous].distance_to_m(self.points[index].x_m, self.points[index].y_m)
+            self.edges[previous][index] = self.edges[index][previous] = length_m
+        return index
+
+    def nearest_point(self, x_m: float, y_m: float, radius_m: float) -> int | None:
+        """Return the path point nearest to a place and no farther than a radius, or None."""
+        best, best_m = None, radius_m
+        for index, point in enumerate(self.points):
+            distance_m = math.hypot(point.x_m - x_m, point.y_m - y_m)
+            if distance_m <= best_m and (best is None or distance_m < best_m):
+                best, best_m = index, distance_m
+        return best
+
+    def add_frontier(
+        self, parent: int, pose: Pose, q: float | None, *, forbidden: bool = False, blocked_by: str = ""
+    ) -> Frontier:
+        """Put a frontier into the buffer; with ``blocked_by`` it is only remembered as blocked."""
+        frontier = Frontier(len(self.frontiers), parent, pose, q, forbidden)
+        self.frontiers.append(frontier)
+        if blocked_by:
+            frontier.state, frontier.reason = FrontierState.BLOCKED, blocked_by
+        else:
+            self._open[frontier.id] = frontier
+        return frontier
+
+    def open_frontiers(self) -> list[Frontier]:
+        """Return what is in the buffer, oldest first."""
+        return list(self._open.values())
+
+    def choose(self, pose: Pose) -> Choice | None:
+        """Return the best open frontier as seen from a pose, or None where the buffer is empty.
+
+        argmax of Q − σ(d), d the straight distance (paper, section IV-A), rounded to 1e-4; ties go to the nearer, then
+        the older frontier. Frontiers on shunned ground come after all others, frontiers without a score after those
+        with one.
+        """
+        best: Choice | None = None
+        best_rank: tuple[bool, bool, float, float, int] | None = None
+        for frontier in self._open.values():
+            distance_m = pose.distance_to_m(frontier.pose.x_m, frontier.pose.y_m)
+            penalty = distance_penalty(
+                distance_m, sharpness_per_m=self.sharpness_per_m, half_distance_m=self.half_distance_m
+            )
+            value = None if frontier.q is None else round(frontier.q - penalty, 4)
+            # Distances are compared to the millimetre: what lies equally far must not be told apart by rounding.
+            rank = (frontier.forbidden, value is None, -(value or 0.0), round(distance_m, 3), frontier.id)
+            if best_rank is None or rank < best_rank:
+                best, best_rank = Choice(frontier, distance_m, penalty, value), rank
+        return best
+
+    def take(self, frontier: Frontier) -> None:
+        """Take a chosen frontier out of the buffer: it becomes a path point when it is reached."""
+        self._open.pop(frontier.id, None)
+        frontier.state = FrontierState.VISITED
+
+    def give_up(self, frontier: Frontier, reason: str) -> None:
+        """Take a frontier out of the buffer for good."""
+        self._open.pop(frontier.id, None)
+        frontier.state, frontier.reason = FrontierState.GIVEN_UP, reason
+
+    def route(self, start: int, frontier: Frontier) -> list[Pose]:
+        """Return the waypoints from a path point to a frontier along known edges, the start left out.
+
+        Between path points that are not joined (which does not happen on one machine's way) the route is straight.
+        """
+        points = self._shortest_way(start, frontier.parent)
+        return [self.points[index] for index in points[1:]] + [frontier.pose]
+
+    def _shortest_way(self, start: int, goal: int) -> list[int]:
+        queue = [(0.0, start)]
+        length_m = {start: 0.0}
+        came_from: dict[int, int] = {}
+        while queue:
+            so_far_m, point = heapq.heappop(queue)
+            if point == goal:
+                break
+            if so_far_m > length_m[point]:
+                continue
+            for other, edge_m in self.edges[point].items():
+                longer_m = so_far_m + edge_m
+                if longer_m < length_m.get(other, math.inf):
+                    length_m[other], came_from[other] = longer_m, point
+                    heapq.heappush(queue, (longer_m, other))
+        way = [goal]
+        while way[-1] in came_from:
+            way.append(came_from[way[-1]])
+        return way[::-1]

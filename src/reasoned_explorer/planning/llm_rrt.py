@@ -1,0 +1,120 @@
+"""LLM-RRT (paper, section IV-B, Algorithm 1): imagine what lies beyond each frontier, score it, take the mean.
+
+Each described scene is expanded into ``children`` imagined scenes; each child is continued as a chain to depth
+``depth``; every imagined node is scored, and Q of the frontier is the unweighted mean of its nodes' scores. With
+``depth`` 0 the scene itself is scored, which is LLM-as-Eval. The paper's other readings are settings.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from reasoned_explorer.minds.context import Minds
+from reasoned_explorer.model import Assessment, Fault, Goal, Scene, SettingsError
+from reasoned_explorer.planning.planner import FrontierScore, ImaginedNode, Plan
+
+LOWEST_SCORE = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class LlmRrtSettings:
+    """How the imagined tree grows and is summed up.
+
+    Attributes:
+        children: Imagined scenes per described scene (C, 3 in the authors' code), at least 1.
+        depth: Length of each chain (L, 2 is the paper's best), at least 0.
+        include_own_score: Whether the described scene's own score takes part in the mean.
+        depth_weight: Weight of a node at depth d is ``depth_weight ** (d - 1)``; 1 is the paper's unweighted mean.
+        restart: Imagine every depth from the described scene itself (the authors' code) instead of continuing a chain.
+    """
+
+    children: int = 3
+    depth: int = 2
+    include_own_score: bool = False
+    depth_weight: float = 1.0
+    restart: bool = False
+
+    def __post_init__(self) -> None:
+        faults = []
+        if not 1 <= self.children <= 32:
+            faults.append(Fault(f"children is {self.children}", "1 to 32"))
+        if not 0 <= self.depth <= 16:
+            faults.append(Fault(f"depth is {self.depth}", "0 to 16"))
+        if not 0.0 < self.depth_weight <= 10.0:  # false for NaN too
+            faults.append(Fault(f"depth_weight is {self.depth_weight}", "above 0, at most 10"))
+        if faults:
+            raise SettingsError("LLM-RRT settings", faults)
+
+
+class LlmRrt:
+    """The paper's planner.
+
+    Args:
+        minds: Who imagines and who scores.
+        settings: How.
+        name: As registered.
+    """
+
+    def __init__(self, minds: Minds, settings: LlmRrtSettings | None = None, *, name: str = "llm-rrt") -> None:
+        self._minds = minds
+        self.settings = settings or LlmRrtSettings()
+        self.name = name
+        self.label = f"{name} [{minds.label}]"
+
+    async def plan(self, goal: Goal, scenes: Sequence[Scene]) -> Plan:
+        """Return Q for each scene and the tree that it comes from.
+
+        One batched visionary call per depth, then one batched evaluator call: the critical path is ``depth`` visionary
+        calls and one evaluator call, whatever the number of scenes.
+        """
+        described = [scene for scene in scenes if scene.fault is None]
+        nodes = list(await self._imagine(goal, described))
+        if self.settings.include_own_score or self.settings.depth == 0:
+            nodes = [*described, *nodes]
+        asked = [node for node in nodes if node.fault is None]
+        answers = iter(await self._minds.evaluator.evaluate(goal, asked) if asked else ())
+        tree = [ImaginedNode(node, next(answers) if node.fault is None else None) for node in nodes]
+        scores = tuple(self._back_propagate(scene, tree) for scene in scenes)
+        return Plan(scores, tuple(tree))
+
+    async def _imagine(self, goal: Goal, described: list[Scene]) -> list[Scene]:
+        nodes: list[Scene] = []
+        parents = described
+        for depth in range(1, self.settings.depth + 1):
+            if not parents:
+                break
+            restarts = self.settings.restart and depth > 1
+            count = self.settings.children if depth == 1 or restarts else 1
+            grown = await self._minds.visionary.imagine(goal, described if restarts else parents, count=count)
+            level = [child for children in grown for child in children]
+            if restarts:
+                # A later rollout from the same scene: its draws must differ from the first one's.
+                level = [replace(child, key=(*child.key, depth)) for child in level]
+            nodes += level
+            parents = [child for child in level if child.fault is None]
+        return nodes
+
+    def _back_propagate(self, scene: Scene, tree: list[ImaginedNode]) -> FrontierScore:
+        """Sum up the nodes that grew from a scene (paper, Algorithm 1, line 4)."""
+        if scene.fault is not None:
+            return FrontierScore(None, fault=scene.fault)
+        own = len(scene.key)
+        branch = [node for node in tree if node.scene.key[:own] == scene.key]
+        answered = [(node, node.assessment) for node in branch if node.assessment is not None]
+        total = weights = 0.0
+        for node, assessment in answered:
+            score = LOWEST_SCORE if assessment.blocked else assessment.score
+            if score is not None:
+                weight = self.settings.depth_weight ** max(0, node.scene.depth - 1)
+                total, weights = total + weight * score, weights + weight
+        if weights == 0.0:
+            faults = [node.scene.fault or (node.assessment and node.assessment.fault) for node in branch]
+            return FrontierScore(None, fault=next((fault for fault in faults if fault), "no answer"))
+        first = min(node.scene.depth for node, _ in answered)
+        nearest = [assessment for node, assessment in answered if node.scene.depth == first]
+        return FrontierScore(
+            total / weights, blocked=_all(nearest, "blocked"), forbidden=_all(nearest, "forbidden")
+        )
+
+
+def _all(assessments: list[Assessment], answer: str) -> bool:
+    return bool(assessments) and all(getattr(assessment, answer) for assessment in assessments)

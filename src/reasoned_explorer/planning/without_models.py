@@ -1,0 +1,58 @@
+"""Planners that ask no model: what a method that claims to reason must beat.
+
+They read of a scene only what a robot without a language model could know: whether the way ahead is blocked, and what
+kind of ground leads ahead.
+"""
+
+from collections.abc import Sequence
+
+from reasoned_explorer.minds.embedded.reading import read_scene
+from reasoned_explorer.model import Goal, Scene
+from reasoned_explorer.planning.planner import FrontierScore, Plan
+
+EVEN_SCORE = 3.0
+
+#: How gladly `FollowPaths` follows each ground: made for walking first, then open hard ground, then the rest.
+_PATH_SCORES = {
+    "pavement": 5.0,
+    "path": 5.0,
+    "plaza": 4.5,
+    "cycleway": 4.0,
+    "steps": 4.0,
+    "road": 3.5,
+    "parking": 3.0,
+}
+_NO_PATH_SCORE = 2.0
+
+
+class NearestFrontier:
+    """Every frontier is as good as any other, so that the nearest is taken (Yamauchi, 1997)."""
+
+    name = "nearest-frontier"
+    label = "nearest-frontier [no model]"
+
+    async def plan(self, goal: Goal, scenes: Sequence[Scene]) -> Plan:  # noqa: ARG002 - the protocol's
+        """Return the same score for each scene."""
+        return Plan(tuple(_score(scene, EVEN_SCORE) for scene in scenes))
+
+
+class FollowPaths:
+    """Prefer frontiers to which a way leads: pavement, path, plaza, then road."""
+
+    name = "follow-paths"
+    label = "follow-paths [no model]"
+
+    async def plan(self, goal: Goal, scenes: Sequence[Scene]) -> Plan:  # noqa: ARG002 - the protocol's
+        """Return a score by the ground that leads ahead."""
+        return Plan(tuple(_score(scene, _path_score(scene.text)) for scene in scenes))
+
+
+def _path_score(text: str) -> float:
+    grounds = read_scene(text).ground_ahead
+    return max((_PATH_SCORES.get(ground, _NO_PATH_SCORE) for ground in grounds), default=_NO_PATH_SCORE)
+
+
+def _score(scene: Scene, q: float) -> FrontierScore:
+    if scene.fault is not None:
+        return FrontierScore(None, fault=scene.fault)
+    return FrontierScore(q, blocked=read_scene(scene.text).blocked_ahead)

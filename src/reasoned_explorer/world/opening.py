@@ -1,0 +1,79 @@
+"""Worlds by what people type: a district to generate, or a file.
+
+``park``, ``park:7`` (seed 7), ``park:7@600`` (600 m across), ``town.osm.pbf``, ``town.osm``, ``kept.rexworld``, or a name
+that another package registered under the entry-point group ``reasoned_explorer.worlds``, whose factory is called as
+``factory(seed=…, size_m=…)`` and returns a `World`.
+"""
+
+import re
+from pathlib import Path
+
+from reasoned_explorer.model import Fault, UnknownNameError, WorldError
+from reasoned_explorer.registry import Registry
+from reasoned_explorer.world.world import World
+
+WORLDS = Registry("world", "worlds", ())
+
+DEFAULT_SIZE_M = 400.0
+KEPT_SUFFIX = ".rexworld"
+_OSM_SUFFIXES = (".osm", ".pbf", ".osm.gz", ".osm.bz2", ".xml")
+_NAME = re.compile(r"(?P<name>[A-Za-z][\w-]*)(?::(?P<seed>\d{1,18}))?(?:@(?P<size>\d+(?:\.\d+)?))?")
+
+
+def open_world(
+    spec: str,
+    *,
+    seed: int = 0,
+    size_m: float = DEFAULT_SIZE_M,
+    bbox: tuple[float, float, float, float] | None = None,
+) -> World:
+    """Return the world that a person means.
+
+    Args:
+        spec: See the module's docstring.
+        seed: For what is generated and for the seeded defaults of what is imported; a seed in the spec wins.
+        size_m: Of a generated world, metres across; a size in the spec wins.
+        bbox: lon0, lat0, lon1, lat1 in degrees; crops an OpenStreetMap file.
+
+    Raises:
+        WorldError: If the file cannot be used, or a bounding box is given for what is no OpenStreetMap file.
+        UnknownNameError: If there is no such district or registered world.
+        SettingsError: If seed or size are out of range.
+    """
+    lowered = spec.lower()
+    if lowered.endswith(KEPT_SUFFIX) or lowered.endswith(_OSM_SUFFIXES) or "/" in spec:
+        return _open_file(Path(spec), seed=seed, bbox=bbox)
+    match = _NAME.fullmatch(spec)
+    if match is None:
+        expected = "a district like park:7@400, or a file that ends in .osm, .osm.pbf or .rexworld"
+        raise WorldError("world", [Fault(f"{spec!r} is neither a name nor a file", expected)])
+    if bbox is not None:
+        raise WorldError("world", [Fault(f"a bounding box for {spec!r}", "one only for OpenStreetMap files")])
+    given_seed = int(match["seed"]) if match["seed"] else seed
+    given_size_m = float(match["size"]) if match["size"] else size_m
+    return _make(match["name"], given_seed, given_size_m)
+
+
+def _open_file(path: Path, *, seed: int, bbox: tuple[float, float, float, float] | None) -> World:
+    if path.name.lower().endswith(KEPT_SUFFIX):
+        from reasoned_explorer.world.files import load_world
+
+        if bbox is not None:
+            raise WorldError("world", [Fault(f"a bounding box for {path}", "one only for OpenStreetMap files")])
+        return load_world(path)
+    from reasoned_explorer.world.osm.importer import import_osm
+
+    return import_osm(path, bbox=bbox, seed=seed)
+
+
+def _make(name: str, seed: int, size_m: float) -> World:
+    from reasoned_explorer.world.generator import DISTRICTS, generate_world
+
+    if name in DISTRICTS:
+        return generate_world(name, seed=seed, size_m=size_m)
+    if name not in WORLDS.names():
+        raise UnknownNameError("world", name, [*DISTRICTS, *WORLDS.names()])
+    world = WORLDS.load(name)(seed=seed, size_m=size_m)
+    if not isinstance(world, World):
+        raise WorldError(f"world {name}", [Fault(f"its factory returned {type(world).__name__}", "a World")])
+    return world
