@@ -2,12 +2,13 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+    FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,13 +23,15 @@ class GeoOrigin:
     lat_deg: float
     lon_deg: float
 
-    def enu_from_geodetic_m(self, lat_deg: Any, lon_deg: Any) -> tuple[FloatArray, FloatArray]:
+    def enu_from_geodetic_m(self, lat_deg: Any, lon_deg: Any) -> "tuple[FloatArray, FloatArray]":
         """Return east and north of the origin, metres, for latitudes and longitudes in degrees.
 
         Scalars and arrays of one shape are taken; arrays of that shape are returned. Heights are taken as zero: within
         5 km of the origin the curvature of the earth moves a point by less than 5 mm horizontally.
         """
-        import pymap3d  # noqa: PLC0415 - only worlds with real places pay for it
+        # Loaded here: most of what uses poses needs neither.
+        import numpy as np
+        import pymap3d
 
         east_m, north_m, _ = pymap3d.geodetic2enu(
             np.asarray(lat_deg, dtype=np.float64), np.asarray(lon_deg, dtype=np.float64), 0.0, *self._triple()
@@ -37,7 +40,7 @@ class GeoOrigin:
 
     def geodetic_from_enu_deg(self, x_m: float, y_m: float) -> tuple[float, float]:
         """Return latitude and longitude, degrees, of a point of the ENU frame."""
-        import pymap3d  # noqa: PLC0415
+        import pymap3d
 
         # A point on the ground lies below the tangent plane by d²/2R.
         drop_m = (x_m * x_m + y_m * y_m) / (2.0 * 6_371_000.0)

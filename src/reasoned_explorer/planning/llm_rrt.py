@@ -83,12 +83,12 @@ class LlmRrt:
             if not parents:
                 break
             restarts = self.settings.restart and depth > 1
-            count = self.settings.children if depth == 1 or restarts else 1
-            grown = await self._minds.visionary.imagine(goal, described if restarts else parents, count=count)
-            level = [child for children in grown for child in children]
             if restarts:
-                # A later rollout from the same scene: its draws must differ from the first one's.
-                level = [replace(child, key=(*child.key, depth)) for child in level]
+                # A later rollout from the same scene needs a key of its own, or its draws would repeat the first's.
+                parents = [replace(scene, key=(*scene.key, depth)) for scene in described]
+            count = self.settings.children if depth == 1 or restarts else 1
+            grown = await self._minds.visionary.imagine(goal, parents, count=count)
+            level = [child for children in grown for child in children]
             nodes += level
             parents = [child for child in level if child.fault is None]
         return nodes

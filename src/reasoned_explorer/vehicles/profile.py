@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field
 
-from reasoned_explorer.model import Camera
+from reasoned_explorer.model import Camera, Fault, SettingsError
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,6 +17,7 @@ class VehicleProfile:
         speed_mps: Cruise speed, metres a second.
         acceleration_mps2: Metres a second squared.
         turn_rate_radps: Radians a second.
+        turn_acceleration_radps2: Radians a second squared.
         camera_height_m: Of its camera above the ground, metres.
         radius_m: Of its body, metres; what collides.
         collides: Whether the world stops it.
@@ -24,6 +25,11 @@ class VehicleProfile:
         look_s: Seconds that one look in N headings takes apart from turning.
         turns_to_look: Whether it turns its body to look in each heading (else it has a camera for each).
         camera: Its cameras.
+        moves_sideways: Whether it moves in any direction whatever it faces (else it turns first).
+        sway_mps: Standing deviation per axis of what wind or slipping feet add to its velocity while it moves.
+
+    Raises:
+        SettingsError: If a figure is out of range.
     """
 
     name: str
@@ -39,6 +45,25 @@ class VehicleProfile:
     look_s: float = 0.0
     turns_to_look: bool = False
     camera: Camera = field(default_factory=Camera)
+    turn_acceleration_radps2: float = math.radians(180.0)
+    moves_sideways: bool = False
+    sway_mps: float = 0.0
+
+    def __post_init__(self) -> None:
+        positive = ("speed_mps", "acceleration_mps2", "turn_rate_radps", "turn_acceleration_radps2", "camera_height_m")
+        not_negative = ("settle_s", "look_s", "sway_mps")
+        faults = [
+            Fault(f"{name} = {getattr(self, name)}", "a finite number > 0")
+            for name in (*positive, "radius_m")
+            if not (math.isfinite(getattr(self, name)) and getattr(self, name) > 0.0)
+        ]
+        faults += [
+            Fault(f"{name} = {getattr(self, name)}", "a finite number ≥ 0")
+            for name in not_negative
+            if not (math.isfinite(getattr(self, name)) and getattr(self, name) >= 0.0)
+        ]
+        if faults:
+            raise SettingsError(f"vehicle profile {self.name!r}", faults)
 
 
 PROFILES = {
@@ -55,6 +80,7 @@ PROFILES = {
             radius_m=0.3,
             collides=False,
             settle_s=5.0,
+            moves_sideways=True,
         ),
         VehicleProfile(
             name="go1-authors",
@@ -67,6 +93,8 @@ PROFILES = {
             radius_m=0.35,
             look_s=11.67,
             turns_to_look=True,
+            turn_acceleration_radps2=math.radians(90.0),
+            sway_mps=0.01,
         ),
         VehicleProfile(
             name="drone",
@@ -78,6 +106,8 @@ PROFILES = {
             camera_height_m=1.5,
             radius_m=0.3,
             settle_s=0.5,
+            moves_sideways=True,
+            sway_mps=0.1,
         ),
         VehicleProfile(
             name="go1",
@@ -90,6 +120,8 @@ PROFILES = {
             radius_m=0.35,
             look_s=1.5,
             turns_to_look=True,
+            turn_acceleration_radps2=math.radians(120.0),
+            sway_mps=0.03,
         ),
     )
 }

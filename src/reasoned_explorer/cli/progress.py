@@ -1,0 +1,113 @@
+"""A mission in lines for people; the same while it runs and when it is shown again from its record."""
+
+import math
+import textwrap
+from collections.abc import Iterator
+
+from reasoned_explorer.model import LegOutcome
+from reasoned_explorer.model.record import EpisodeRecord, MissionHeader, MissionSummary, StepRecord, ViewRecord
+
+_WIDTH = 110
+
+
+def header_lines(header: MissionHeader) -> Iterator[str]:
+    """Yield what a mission starts with."""
+    x_m, y_m, _, heading_rad = header.start
+    level = f" (level {header.level})" if header.level else ""
+    yield f"“{header.goal}”{level}"
+    yield f"  world    {header.world}, start {x_m:.0f} m east, {y_m:.0f} m north, heading {math.degrees(heading_rad):.0f}°"
+    yield f"  agent    {header.planner}"
+    yield f"  eyes     {header.captioner}; vehicle {header.vehicle}"
+    yield f"  clock    {header.clock}, CT {header.ct_label}; seed {header.seed}"
+    reference = "none" if header.reference_length_m is None else f"{header.reference_length_m:.0f} m"
+    yield f"  judge    {len(header.goal_objects)} things here satisfy the goal; shortest way {reference}"
+    if header.attribution:
+        yield f"  map      {header.attribution}"
+
+
+def step_lines(step: StepRecord) -> Iterator[str]:
+    """Yield a step: what is seen ahead, what was chosen and why, what it took."""
+    ahead = _ahead(step)
+    gone_m = sum(leg.length_m for leg in step.legs)
+    yield f"step {step.step:3d}  {_clock(step.started_s)}  {_clipped(ahead) if ahead else '(no look)'}"
+    choice = step.choice
+    if choice is not None:
+        q = "?" if choice.q is None else f"{choice.q:.2f}"
+        value = "?" if choice.value is None else f"{choice.value:.2f}"
+        chosen = (
+            f"frontier {choice.frontier} in {choice.distance_m:.0f} m: Q {q} − σ(d) {choice.penalty:.2f} = {value}"
+        )
+        trouble = next((leg for leg in step.legs if leg.outcome is not LegOutcome.ARRIVED), None)
+        went = f"{gone_m:.0f} m" if trouble is None else f"{gone_m:.0f} m, then {trouble.outcome.value} {trouble.detail}"
+        yield f"          → {chosen}; went {went.rstrip()}; CT {step.ct_s:.0f} s, TT {step.tt_s:.0f} s"
+    for view in step.views:
+        if view.found:
+            yield f"          ! goal seen ({view.confidence:.2f}): {_clipped(view.evidence)}"
+    for note in step.notes:
+        yield f"          · {_clipped(note)}"
+
+
+def step_details(step: StepRecord) -> Iterator[str]:
+    """Yield everything of a step: each view's caption and the imagined tree with its scores."""
+    yield from step_lines(step)
+    for view in step.views:
+        q = "-" if view.q is None else f"{view.q:.2f}"
+        flags = " blocked" * view.blocked + " forbidden" * view.forbidden
+        yield f"  view {view.key}, heading {math.degrees(view.heading_rad):.0f}°, Q {q}{flags}"
+        yield from textwrap.wrap(view.caption or f"({view.caption_fault})", _WIDTH, initial_indent="    ", subsequent_indent="    ")
+        for node in step.tree:
+            if node.key[: len(view.key)] == view.key:
+                score = "-" if node.score is None else f"{node.score:.2f}"
+                indent = "    " + "  " * node.depth
+                yield from textwrap.wrap(f"[{score}] {node.text or node.fault}", _WIDTH, initial_indent=indent, subsequent_indent=indent + "       ")
+    for leg in step.legs:
+        error = "" if leg.localization_rms_m is None else f", localization {leg.localization_rms_m:.3f} m"
+        yield (
+            f"  leg to ({leg.target[0]:.1f}, {leg.target[1]:.1f}): {leg.outcome.value} {leg.detail}".rstrip()
+            + f", {leg.length_m:.1f} m in {leg.duration_s:.1f} s, off the line {leg.cross_track_rms_m:.2f} m{error}"
+        )
+
+
+def summary_lines(record: EpisodeRecord) -> Iterator[str]:
+    """Yield how a mission ended and what it scored."""
+    summary = record.summary
+    if summary is None:
+        yield f"INCOMPLETE: the record ends after step {len(record.steps) - 1}; the process was cut off"
+        return
+    yield from _outcome_lines(summary)
+    reference = "none" if summary.reference_length_m is None else f"{summary.reference_length_m:.0f} m"
+    left = "" if summary.distance_to_goal_m is None else f", ended {summary.distance_to_goal_m:.0f} m from a goal"
+    yield f"  path     {summary.path_length_m:.0f} m travelled, shortest way {reference}{left}"
+    spent_s, calls = summary.ct_s + summary.tt_s, ", ".join(f"{n} {role}" for role, n in summary.calls.items())
+    yield f"  time     CT {summary.ct_s:.0f} s ({record.header.ct_label}) + TT {summary.tt_s:.0f} s = {_clock(spent_s)}"
+    yield f"  calls    {calls or 'none'}"
+    yield (
+        f"  scores   SR {summary.success:d}  OSR {summary.oracle_success:d}  SPL {summary.spl:.2f}  CASR {summary.casr:.2f}"
+        f"   [{record.header.minds}]"
+    )
+    if summary.collisions:
+        yield f"  bumps    {len(summary.collisions)}: {_clipped(', '.join(summary.collisions))}"
+
+
+def _outcome_lines(summary: MissionSummary) -> Iterator[str]:
+    if summary.declared and summary.success:
+        yield f"Found Goal: {summary.judge}"
+    elif summary.declared:
+        yield f"declared “Found Goal”, but the judge disagrees: {summary.judge}"
+    else:
+        yield f"not found ({summary.end.value}): {summary.reason}"
+    if summary.declared:
+        yield f"  evidence {_clipped(summary.reason)}"
+
+
+def _ahead(step: StepRecord) -> str:
+    views: tuple[ViewRecord, ...] = step.views
+    return (views[0].caption or f"({views[0].caption_fault})") if views else ""
+
+
+def _clipped(text: str) -> str:
+    return textwrap.shorten(text, _WIDTH, placeholder=" …")
+
+
+def _clock(seconds: float) -> str:
+    return f"{int(seconds) // 60:02d}:{int(seconds) % 60:02d}"

@@ -1,0 +1,362 @@
+"""One mission from a sentence to its score: puts the rooms together, runs the agent, has the judge look at it."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from reasoned_explorer.clock import Clock, MixedClock, RealClock, VirtualClock
+from reasoned_explorer.evaluation.metrics import MissionOutcome, MissionScore, score_mission
+from reasoned_explorer.evaluation.oracle import OracleTruth
+from reasoned_explorer.evaluation.record_file import RecordWriter
+from reasoned_explorer.exploration.explorer import Exploration, Explorer, Parts
+from reasoned_explorer.exploration.settings import ExplorerSettings
+from reasoned_explorer.geometry import Pose
+from reasoned_explorer.minds.context import MindContext
+from reasoned_explorer.minds.latency import latency_profile
+from reasoned_explorer.minds.ledger import CallRecord, Ledger
+from reasoned_explorer.minds.registry import make_minds
+from reasoned_explorer.model import LegOutcome, UnknownNameError
+from reasoned_explorer.model.record import EpisodeRecord, MissionEnd, MissionHeader, MissionSummary, StepRecord
+from reasoned_explorer.perception.context import CaptionerContext
+from reasoned_explorer.perception.registry import CAPTIONERS
+from reasoned_explorer.planning.registry import make_planner
+from reasoned_explorer.simulation.eyes import Eyes
+from reasoned_explorer.simulation.vehicle import SimulatedVehicle, check_start
+from reasoned_explorer.task.judge import Judge
+from reasoned_explorer.task.reading import read_goal
+from reasoned_explorer.task.sampling import sample_start
+from reasoned_explorer.vehicles import VehicleProfile
+from reasoned_explorer.vehicles.registry import vehicle_profile
+from reasoned_explorer.world.atlas import Atlas
+from reasoned_explorer.world.digest import world_digest
+from reasoned_explorer.world.geodesic import Traveller
+from reasoned_explorer.world.world import World
+
+CLOCKS: Mapping[str, Callable[[], Clock]] = {"virtual": VirtualClock, "mixed": MixedClock, "real": RealClock}
+#: A seeded random start is at least and at most this far, on the shortest compliant way, from being successful.
+START_RANGE_M = (60.0, 400.0)
+
+
+@dataclass(frozen=True, slots=True)
+class MissionSettings:
+    """Who does what in a mission, by name, and how.
+
+    Attributes:
+        planner: A registered planner.
+        planner_settings: Of that planner.
+        minds: Registered minds; they fill every role that has no name of its own.
+        visionary: Who imagines.
+        evaluator: Who scores.
+        checker: Who notices the goal.
+        captioner: A registered captioner.
+        vehicle: A registered vehicle profile.
+        latency: A latency profile: how long modelled calls take.
+        clock: ``virtual``, ``mixed`` or ``real``.
+        explorer: How the agent explores.
+        success_radius_m: R of the judge, metres.
+        seed: Of the mission: everything that is drawn is keyed by it.
+    """
+
+    planner: str = "llm-rrt"
+    planner_settings: Mapping[str, Any] = field(default_factory=dict)
+    minds: str = "embedded"
+    visionary: str | None = None
+    evaluator: str | None = None
+    checker: str | None = None
+    captioner: str = "noisy"
+    vehicle: str = "drone"
+    latency: str = "gpt-2023"
+    clock: str = "virtual"
+    explorer: ExplorerSettings = field(default_factory=ExplorerSettings)
+    success_radius_m: float = 15.0
+    seed: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class MissionResult:
+    """What came of a mission.
+
+    Attributes:
+        record: Everything that is kept of it.
+        world: Where it took place.
+        score: Its metrics.
+        folder: Where the record lies, or None.
+    """
+
+    record: EpisodeRecord
+    world: World
+    score: MissionScore
+    folder: Path | None = None
+
+    @property
+    def summary(self) -> MissionSummary:
+        """How it ended."""
+        if self.record.summary is None:  # a result is only made once there is one
+            raise AssertionError
+        return self.record.summary
+
+    def draw_map(self, path: Path | str) -> None:
+        """Draw what happened on a map, PNG, SVG or PDF by the path's suffix."""
+        from reasoned_explorer.evaluation.record_map import draw_record
+
+        draw_record(self.world, self.record, Path(path))
+
+
+class Mission:
+    """A mission that is ready to run: every input has been checked, nothing has been written.
+
+    Args:
+        goal: The goal sentence.
+        world: A world, or an atlas of one where several missions share it.
+        settings: Who does what.
+        start: Where it begins; None draws a start by the seed.
+
+    Raises:
+        GoalError: If the goal cannot be understood, or nothing in this world satisfies it.
+        StartError: If no mission can begin at the start, or no start can be found.
+        UnknownNameError: If a name is not registered.
+        SettingsError: If settings are out of range.
+    """
+
+    def __init__(
+        self,
+        goal: str,
+        world: World | Atlas,
+        settings: MissionSettings | None = None,
+        *,
+        start: Pose | None = None,
+    ) -> None:
+        self.settings = settings or MissionSettings()
+        self.atlas = world if isinstance(world, Atlas) else Atlas(world)
+        self.spec = read_goal(goal)
+        self.goal = self.spec.goal
+        self.profile = vehicle_profile(self.settings.vehicle)
+        traveller = traveller_of(self.profile)
+        self.judge = Judge(self.atlas, self.spec, traveller=traveller, success_radius_m=self.settings.success_radius_m)
+        self.start = self._start(start, traveller)
+        if self.settings.clock not in CLOCKS:
+            raise UnknownNameError("clock", self.settings.clock, tuple(CLOCKS))
+        self.clock = CLOCKS[self.settings.clock]()
+        self.explorer = self._explorer()
+
+    def run(
+        self, *, folder: Path | None = None, on_step: Callable[[StepRecord], None] | None = None
+    ) -> MissionResult:
+        """Run the mission to its end.
+
+        Args:
+            folder: Where the record is written as it happens; None keeps it in memory only.
+            on_step: Called with each step's record as soon as the step is over.
+
+        Raises:
+            RecordError: If the record cannot be written; the mission ends at once and what was written stays.
+            KeyboardInterrupt: If a person stops it; the record then says so and ends at its last whole step.
+        """
+        header = self._header()
+        steps: list[StepRecord] = []
+        if folder is None:
+            return self._run(header, steps, None, on_step)
+        with RecordWriter(folder) as writer:
+            writer.header(header)
+            return self._run(header, steps, writer, on_step)
+
+    def _run(
+        self,
+        header: MissionHeader,
+        steps: list[StepRecord],
+        writer: RecordWriter | None,
+        on_step: Callable[[StepRecord], None] | None,
+    ) -> MissionResult:
+        def keep(step: StepRecord) -> None:
+            steps.append(step)
+            if writer is not None:
+                writer.step(step)
+            if on_step is not None:
+                on_step(step)
+
+        self.explorer.on_step = keep
+        try:
+            exploration = self.clock.run(self.explorer.run(self.goal))
+        except KeyboardInterrupt:
+            stopped = self._exploration_so_far(steps)
+            summary, _ = self._summary(stopped, steps)
+            if writer is not None:
+                writer.summary(summary)
+            raise
+        summary, score = self._summary(exploration, steps)
+        if writer is not None:
+            writer.summary(summary)
+        folder = writer.path.parent if writer is not None else None
+        return MissionResult(EpisodeRecord(header, tuple(steps), summary), self.atlas.world, score, folder)
+
+    def _start(self, start: Pose | None, traveller: Traveller) -> Pose:
+        if start is not None:
+            check_start(self.atlas, self.profile, start)
+            return replace(start, z_m=self.profile.camera_height_m)
+        drawn = sample_start(
+            self.atlas,
+            self.spec,
+            traveller,
+            seed=self.settings.seed,
+            min_m=START_RANGE_M[0],
+            max_m=START_RANGE_M[1],
+            judge=self.judge,
+        )
+        return replace(drawn, z_m=self.profile.camera_height_m)
+
+    def _explorer(self) -> Explorer:
+        settings, ledger = self.settings, Ledger()
+        latency = latency_profile(settings.latency)
+        # The oracle alone may read the truth; it is the only one that asks for it.
+        truth = OracleTruth(self.atlas, self.judge, self.profile)
+        minds = make_minds(
+            MindContext(self.clock, latency, ledger, settings.seed, truth),
+            settings.minds,
+            visionary=settings.visionary,
+            evaluator=settings.evaluator,
+            checker=settings.checker,
+        )
+
+        async def charge_captions(name: str, key: tuple[int, ...], count: int) -> None:
+            started_s = self.clock.now_s()
+            spent_s = [latency.duration_s("caption", settings.seed, *key, index) for index in range(count)]
+            await self.clock.think(max(spent_s, default=0.0))
+            ledger.add_all(
+                CallRecord("caption", name, (*key, index), started_s, seconds) for index, seconds in enumerate(spent_s)
+            )
+
+        captioner = CAPTIONERS.load(settings.captioner)(CaptionerContext(charge=charge_captions, seed=settings.seed))
+        self._labels = (make_planner(settings.planner, minds, settings.planner_settings), minds.label, captioner.label)
+        vehicle = SimulatedVehicle(
+            self.atlas, self.profile, self.start, clock=self.clock, eyes=Eyes(self.atlas), seed=settings.seed
+        )
+        parts = Parts(vehicle, captioner, self._labels[0], minds.checker, self.clock, ledger)
+        return Explorer(parts, settings.explorer)
+
+    def _header(self) -> MissionHeader:
+        start, world = self.start, self.atlas.world
+        length_m = self.judge.reference_length_m(start)
+        way = self.judge.reference_path(start)
+        planner, minds_label, captioner_label = self._labels
+        return MissionHeader(
+            goal=self.goal.text,
+            level=self.goal.level,
+            world=world.name,
+            world_digest=world_digest(world),
+            attribution=world.attribution,
+            start=(round(start.x_m, 3), round(start.y_m, 3), round(start.z_m, 3), round(start.heading_rad, 6)),
+            planner=planner.label,
+            minds=minds_label,
+            captioner=captioner_label,
+            vehicle=self.profile.name,
+            clock=self.settings.clock,
+            ct_label=self._ct_label(),
+            settings=asdict(self.settings),
+            seed=self.settings.seed,
+            versions={name: version(name) for name in ("reasoned-explorer", "numpy", "numba", "shapely")},
+            goal_objects=self._goal_objects(),
+            reference_length_m=round(length_m, 3) if np.isfinite(length_m) else None,
+            reference_way=tuple((round(float(x), 2), round(float(y), 2)) for x, y in way) if way is not None else (),
+            success_radius_m=self.settings.success_radius_m,
+        )
+
+    def _ct_label(self) -> str:
+        measured = {"virtual": "modelled", "mixed": "measured, modelled where embedded", "real": "measured"}
+        return f"{measured[self.settings.clock]} ({self.settings.latency})"
+
+    def _goal_objects(self) -> tuple[tuple[int, str, float, float, int], ...]:
+        objects = self.atlas.world.objects
+        return tuple(
+            (index, objects[index].class_name, round(objects[index].x_m, 2), round(objects[index].y_m, 2), grade)
+            for index, grade in self.judge.satisfying
+        )
+
+    def _exploration_so_far(self, steps: list[StepRecord]) -> Exploration:
+        last = steps[-1] if steps else None
+        plan_s = sum(step.plan_s for step in steps)
+        ct_s, tt_s = (last.ct_s, last.tt_s) if last else (0.0, 0.0)
+        return Exploration(MissionEnd.INTERRUPTED, "stopped by a person", ct_s, tt_s, plan_s, len(steps))
+
+    def _summary(self, ended: Exploration, steps: list[StepRecord]) -> tuple[MissionSummary, MissionScore]:
+        track = track_of(self.start, steps)
+        judged = self.judge.judge_track(track, declared=ended.end is MissionEnd.FOUND)
+        length_m = float(np.hypot(*np.diff(track[:, :2], axis=0).T).sum()) if len(track) > 1 else 0.0
+        score = score_mission(
+            MissionOutcome(
+                declared=ended.end is MissionEnd.FOUND,
+                success=judged.success,
+                oracle_success=judged.oracle_success,
+                path_length_m=length_m,
+                reference_length_m=self.judge.reference_length_m(self.start),
+                distance_to_goal_m=judged.distance_to_goal_m,
+                ct_s=ended.ct_s,
+                tt_s=ended.tt_s,
+                plan_s=ended.plan_s,
+                t_max_s=self.settings.explorer.t_max_s,
+            )
+        )
+        calls: dict[str, int] = {}
+        for step in steps:
+            for call in step.calls:
+                calls[call.role] = calls.get(call.role, 0) + 1
+        reference_m = self.judge.reference_length_m(self.start)
+        summary = MissionSummary(
+            end=ended.end,
+            reason=ended.reason,
+            declared=ended.end is MissionEnd.FOUND,
+            success=score.success,
+            oracle_success=score.oracle_success,
+            compliant=judged.compliant,
+            spl=round(score.spl, 6),
+            casr=round(score.casr, 6),
+            path_length_m=round(length_m, 3),
+            reference_length_m=round(reference_m, 3) if np.isfinite(reference_m) else None,
+            distance_to_goal_m=_finite(judged.distance_to_goal_m),
+            ct_s=round(ended.ct_s, 6),
+            tt_s=round(ended.tt_s, 6),
+            plan_s=round(ended.plan_s, 6),
+            steps=ended.steps,
+            calls=dict(sorted(calls.items())),
+            radii={f"{radius_m:g}": hit for radius_m, hit in judged.radii},
+            judge=judged.reason,
+            collisions=tuple(
+                leg.detail for step in steps for leg in step.legs if leg.outcome is LegOutcome.COLLISION
+            ),
+        )
+        return summary, score
+
+
+def _finite(value: float | None) -> float | None:
+    return round(value, 3) if value is not None and np.isfinite(value) else None
+
+
+def traveller_of(profile: VehicleProfile) -> Traveller:
+    """Return who the shortest ways are for: what a profile's body can pass."""
+    return Traveller(flies=profile.flies, radius_m=profile.radius_m, collides=profile.collides)
+
+
+def track_of(start: Pose, steps: list[StepRecord]) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Return the true way travelled, shape (n, 3): x_m, y_m, z_m; the start is in it, n ≥ 1."""
+    points = [(start.x_m, start.y_m, start.z_m)]
+    for step in steps:
+        for leg in step.legs:
+            points += [(point.x_m, point.y_m, point.z_m) for point in leg.track]
+    return np.array(points, dtype=np.float64)
+
+
+def run_mission(
+    goal: str,
+    world: World | Atlas,
+    settings: MissionSettings | None = None,
+    *,
+    start: Pose | None = None,
+    folder: Path | str | None = None,
+    on_step: Callable[[StepRecord], None] | None = None,
+) -> MissionResult:
+    """Run one mission; see `Mission` for the arguments and what it raises."""
+    mission = Mission(goal, world, settings, start=start)
+    return mission.run(folder=Path(folder) if folder is not None else None, on_step=on_step)

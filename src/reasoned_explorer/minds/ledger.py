@@ -1,0 +1,104 @@
+"""What every call of a mind cost: seconds, tokens and money."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class CallRecord:
+    """One call.
+
+    Attributes:
+        role: ``caption``, ``visionary``, ``evaluator`` or ``checker``.
+        model: What answered.
+        key: Of the scene that it was about: (step, look, view, ...).
+        started_s: Mission time when it was asked, seconds.
+        latency_s: Seconds that it is charged.
+        tokens_in: Tokens that were sent; 0 for minds that have none.
+        tokens_out: Tokens that came back, likewise.
+        usd: US dollars.
+        cached: Whether the answer came from a store and not from the model; its seconds are the original ones.
+        retries: How often it was asked again before it was answered or given up.
+        fault: Why there is no answer, or None.
+    """
+
+    role: str
+    model: str
+    key: tuple[int, ...]
+    started_s: float
+    latency_s: float
+    tokens_in: int = 0
+    tokens_out: int = 0
+    usd: float = 0.0
+    cached: bool = False
+    retries: int = 0
+    fault: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class RoleTotals:
+    """What the calls of one role add up to.
+
+    Attributes:
+        calls: How many.
+        faults: How many of them were not answered.
+        cached: How many came from a store.
+        retries: How often calls were asked again.
+        latency_s: Sum of the calls' seconds, more than the time waited where calls ran at the same time.
+        tokens_in: Tokens sent.
+        tokens_out: Tokens received.
+        usd: US dollars.
+    """
+
+    calls: int = 0
+    faults: int = 0
+    cached: int = 0
+    retries: int = 0
+    latency_s: float = 0.0
+    tokens_in: int = 0
+    tokens_out: int = 0
+    usd: float = 0.0
+
+
+class Ledger:
+    """All calls of one mission, in the order in which they were asked."""
+
+    def __init__(self) -> None:
+        self._calls: list[CallRecord] = []
+
+    def add(self, call: CallRecord) -> None:
+        """Write a call down."""
+        self._calls.append(call)
+
+    def add_all(self, calls: Iterable[CallRecord]) -> None:
+        """Write several calls down, in order."""
+        self._calls.extend(calls)
+
+    @property
+    def calls(self) -> tuple[CallRecord, ...]:
+        """Every call so far."""
+        return tuple(self._calls)
+
+    def since(self, count: int) -> tuple[CallRecord, ...]:
+        """Return the calls after the first ``count``: what a step added, for whoever writes as it happens."""
+        return tuple(self._calls[count:])
+
+    def __len__(self) -> int:
+        return len(self._calls)
+
+    def totals(self) -> dict[str, RoleTotals]:
+        """Return the totals of each role that was asked, sorted by role."""
+        return {role: self._total(role) for role in sorted({call.role for call in self._calls})}
+
+    def _total(self, role: str) -> RoleTotals:
+        calls = [call for call in self._calls if call.role == role]
+        return RoleTotals(
+            calls=len(calls),
+            faults=sum(call.fault is not None for call in calls),
+            cached=sum(call.cached for call in calls),
+            retries=sum(call.retries for call in calls),
+            latency_s=sum(call.latency_s for call in calls),
+            tokens_in=sum(call.tokens_in for call in calls),
+            tokens_out=sum(call.tokens_out for call in calls),
+            usd=sum(call.usd for call in calls),
+        )

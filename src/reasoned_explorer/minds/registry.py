@@ -1,0 +1,60 @@
+"""Minds by name, and how roles of different names are put together."""
+
+from reasoned_explorer.minds.context import MindContext, Minds
+from reasoned_explorer.registry import Entry, Registry
+
+#: Every mind that there is. A factory is called with a `MindContext` and returns `Minds`.
+MINDS = Registry(
+    "mind",
+    "minds",
+    (
+        Entry(
+            "embedded",
+            "reasoned_explorer.minds.embedded:make_minds",
+            "a stand-in without a language model: words, lexicon, place statistics, MiniLM where present",
+        ),
+        Entry(
+            "embedded-words",
+            "reasoned_explorer.minds.embedded:make_words_minds",
+            "the embedded minds without MiniLM, present or not",
+        ),
+        Entry("scripted", "reasoned_explorer.minds.scripted:make_minds", "answers from rules, for tests"),
+        Entry("oracle", "reasoned_explorer.evaluation.oracle:make_minds", "reads the truth: an upper bound, no method"),
+    ),
+)
+
+
+def make_minds(
+    context: MindContext,
+    minds: str = "embedded",
+    *,
+    visionary: str | None = None,
+    evaluator: str | None = None,
+    checker: str | None = None,
+) -> Minds:
+    """Return minds by name, each role from a name of its own where one is given.
+
+    Args:
+        context: What they are made with.
+        minds: Fills every role that is not named.
+        visionary: Fills this role.
+        evaluator: Likewise.
+        checker: Likewise.
+
+    Raises:
+        UnknownNameError: If a name is not registered.
+    """
+    names = {"evaluator": evaluator or minds, "visionary": visionary or minds, "checker": checker or minds}
+    made: dict[str, Minds] = {}
+    for name in names.values():
+        if name not in made:
+            made[name] = MINDS.load(name)(context)
+    if len(made) == 1:
+        return made[names["evaluator"]]
+    label = ", ".join(f"{role}: {made[name].label}" for role, name in names.items())
+    return Minds(
+        label=label,
+        evaluator=made[names["evaluator"]].evaluator,
+        visionary=made[names["visionary"]].visionary,
+        checker=made[names["checker"]].checker,
+    )

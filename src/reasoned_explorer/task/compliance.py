@@ -1,0 +1,131 @@
+"""Whether a track keeps to the ground that a level-3 goal asks for.
+
+The rule: forbidden ground within 2 m of other ground is tolerated. What goes deeper counts with the border that it
+crosses on its way in and out (2 m each, less where there is less); more than 5 m in one such stretch is a violation.
+So walking along the edge never counts, a corner cut by a step does not, crossing a road of more than 5 m does. Unknown
+ground is never forbidden.
+
+A mission that starts on forbidden ground may leave it: of its first stretch as many metres are excused as twice the
+straight distance to the nearest other ground, and 2 m.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reasoned_explorer.world.taxonomy import Ground
+
+#: Forbidden ground this near to other ground is tolerated, metres.
+TOLERANCE_M = 2.0
+#: More than this in one stretch is a violation, metres.
+STRETCH_M = 5.0
+_STEP_M = 0.25
+_SEARCH_M = 200.0
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+class GroundCodes(Protocol):
+    """What is asked about ground; a `GroundRaster` answers it."""
+
+    def at_many(self, xs_m: ArrayLike, ys_m: ArrayLike) -> NDArray[np.uint8]:
+        """Return the codes of the ground at points."""
+
+
+@dataclass(frozen=True, slots=True)
+class ComplianceReport:
+    """Whether a track complied.
+
+    Attributes:
+        compliant: No stretch is a violation.
+        longest_stretch_m: The longest that counts, metres; 0 where none does.
+        forbidden_m: Metres on forbidden ground in all, tolerated ones included.
+        violation_at_m: Metres along the track at which the first violation became one, or infinity.
+    """
+
+    compliant: bool
+    longest_stretch_m: float = 0.0
+    forbidden_m: float = 0.0
+    violation_at_m: float = math.inf
+
+
+def compliance_of(points: Sequence[tuple[float, float]], ground: GroundCodes, forbidden: frozenset[Ground]) -> ComplianceReport:
+    """Return whether a track complied.
+
+    Args:
+        points: ENU metres, oldest first; straight in between.
+        ground: Of the world.
+        forbidden: Ground to keep off (`GoalSpec.forbidden`).
+    """
+    if not forbidden or not points:
+        return ComplianceReport(compliant=True)
+    places, along = _resampled(np.asarray(points, dtype=np.float64))
+    codes = np.zeros(256, dtype=np.bool_)
+    codes[[int(item) for item in forbidden]] = True
+    on = codes[ground.at_many(places[:, 0], places[:, 1])]
+    if not on.any():
+        return ComplianceReport(compliant=True)
+    deep = on.copy()
+    inner = places[on]
+    near_edge = np.zeros(len(inner), dtype=np.bool_)
+    for dx, dy in _disc(TOLERANCE_M):
+        near_edge |= ~codes[ground.at_many(inner[:, 0] + dx, inner[:, 1] + dy)]
+    deep[on] = ~near_edge
+    steps = np.diff(along, prepend=along[0])
+    excused_m = 2.0 * _way_off_m(places[0], ground, codes) + TOLERANCE_M if on[0] else 0.0
+    longest_m, violation_at_m = 0.0, math.inf
+    for first, last in _runs(on):
+        for start_m, end_m in _counted(along, deep, first, last):
+            length_m = end_m - start_m - (excused_m if first == 0 else 0.0)
+            longest_m = max(longest_m, length_m)
+            if length_m > STRETCH_M:
+                violation_at_m = min(violation_at_m, end_m - length_m + STRETCH_M)
+    forbidden_m = float(steps[on].sum())
+    return ComplianceReport(math.isinf(violation_at_m), float(longest_m), forbidden_m, float(violation_at_m))
+
+
+def _resampled(points: Floats) -> tuple[Floats, Floats]:
+    """Return places at most 0.25 m apart along a track, and how far along it they lie."""
+    lengths = np.hypot(*np.diff(points, axis=0).T) if len(points) > 1 else np.empty(0)
+    at = np.concatenate(([0.0], np.cumsum(lengths)))
+    ticks = np.unique(np.concatenate((at, np.arange(0.0, at[-1], _STEP_M))))
+    return np.stack((np.interp(ticks, at, points[:, 0]), np.interp(ticks, at, points[:, 1])), axis=1), ticks
+
+
+def _runs(flags: Flags) -> list[tuple[int, int]]:
+    """Return first and last place of every run of flags."""
+    padded = np.concatenate(([False], flags, [False]))
+    changes = np.flatnonzero(padded[1:] != padded[:-1])
+    return [(int(a), int(b) - 1) for a, b in zip(changes[::2], changes[1::2], strict=True)]
+
+
+def _counted(along: Floats, deep: Flags, first: int, last: int) -> list[tuple[float, float]]:
+    """Return the stretches of one run that count: deep parts with their borders, joined where these meet."""
+    found: list[tuple[float, float]] = []
+    for a, b in _runs(deep[first : last + 1]):
+        start_m = max(float(along[first]), float(along[first + a]) - TOLERANCE_M)
+        end_m = min(float(along[last]), float(along[first + b]) + TOLERANCE_M)
+        if found and start_m <= found[-1][1]:
+            start_m = found.pop()[0]
+        found.append((start_m, end_m))
+    return found
+
+
+def _disc(radius_m: float) -> list[tuple[float, float]]:
+    ticks = np.arange(-radius_m, radius_m + 1e-9, 0.5)
+    return [(float(x), float(y)) for x in ticks for y in ticks if x * x + y * y <= radius_m * radius_m + 1e-9]
+
+
+def _way_off_m(place: Floats, ground: GroundCodes, codes: Flags) -> float:
+    """Return the straight distance from a place to the nearest ground that is not forbidden, at most 200 m."""
+    angles = np.linspace(0.0, 2.0 * math.pi, 64, endpoint=False)
+    for radius_m in np.arange(0.5, _SEARCH_M, 0.5):
+        around = ground.at_many(place[0] + radius_m * np.sin(angles), place[1] + radius_m * np.cos(angles))
+        if not codes[around].all():
+            return float(radius_m)
+    return _SEARCH_M

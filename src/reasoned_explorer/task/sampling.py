@@ -1,0 +1,213 @@
+"""Seeded starts and episodes."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reasoned_explorer.geometry import Pose
+from reasoned_explorer.model import Fault, SettingsError, StartError
+from reasoned_explorer.model.draws import key_of, uniform
+from reasoned_explorer.task.catalogue import CatalogueGoal, goals
+from reasoned_explorer.task.episode import TIME_LIMIT_S, Episode
+from reasoned_explorer.task.goal_spec import GoalSpec
+from reasoned_explorer.task.judge import Judge
+from reasoned_explorer.task.targets import Grader
+from reasoned_explorer.world.atlas import Atlas
+from reasoned_explorer.world.geodesic import Traveller
+from reasoned_explorer.world.taxonomy import IMPASSABLE_ON_FOOT, Ground
+
+#: Goals that a blind declaration would satisfy more often than this are left out of splits.
+MAX_BLIND_RATE = 0.10
+_BLIND_PLACES = 300
+_ATTEMPTS = 60
+
+
+@dataclass(frozen=True, slots=True)
+class SamplingSettings:
+    """How episodes are drawn.
+
+    Attributes:
+        min_m: The reference way is at least this long, metres; above 0.
+        max_m: And at most this long.
+        camera_height_m: Of the robot that is judged, metres.
+        success_radius_m: Metres.
+        time_limit_s: T_max, seconds.
+        max_blind_rate: Goals that a blind declaration satisfies more often are left out, in [0, 1].
+    """
+
+    min_m: float = 30.0
+    max_m: float = 300.0
+    camera_height_m: float = 1.0
+    success_radius_m: float = 15.0
+    time_limit_s: float = TIME_LIMIT_S
+    max_blind_rate: float = MAX_BLIND_RATE
+
+    def __post_init__(self) -> None:
+        """Check the values.
+
+        Raises:
+            SettingsError: With everything that is out of range.
+        """
+        faults = []
+        if not (math.isfinite(self.min_m) and math.isfinite(self.max_m) and 0.0 < self.min_m < self.max_m):
+            faults.append(Fault(f"min_m is {self.min_m}, max_m is {self.max_m}", "0 < min_m < max_m, finite metres"))
+        if not 0.0 <= self.max_blind_rate <= 1.0:
+            faults.append(Fault(f"max_blind_rate is {self.max_blind_rate}", "a share in [0, 1]"))
+        if faults:
+            raise SettingsError("sampling of episodes", faults)
+
+
+def free_places(
+    atlas: Atlas, *, traveller: Traveller, count: int, seed: int, forbidden: frozenset[Ground] = frozenset()
+) -> NDArray[np.float64]:
+    """Return random places where a mission could begin: free for the traveller, outdoors, on ground that one can walk on.
+
+    Unknown ground is taken only where there is no other. Flyers start over ground that one can walk on, too.
+
+    Args:
+        atlas: The world.
+        traveller: Who starts.
+        count: How many; fewer are returned only where there are no places at all.
+        seed: Of the draw.
+        forbidden: Ground that is none to start on.
+
+    Returns:
+        ENU metres, shape (n, 2).
+    """
+    space = atlas.geodesics.space(traveller, shunned=forbidden)
+    grid = space.grid
+    rows, cols = np.nonzero(space.free)
+    xs, ys = grid.min_x_m + (cols + 0.5) * grid.cell_m, grid.min_y_m + (rows + 0.5) * grid.cell_m
+    codes = atlas.ground.at_many(xs, ys)
+    refused = np.zeros(256, dtype=np.bool_)
+    refused[[int(ground) for ground in IMPASSABLE_ON_FOOT | forbidden | {Ground.UNKNOWN}]] = True
+    open_cells = np.flatnonzero(~refused[codes])
+    if not open_cells.size:
+        open_cells = np.flatnonzero(codes == Ground.UNKNOWN)
+    if not open_cells.size:
+        return np.empty((0, 2))
+    bulk = np.random.Generator(np.random.PCG64(key_of(seed, "free places")))
+    picked = open_cells[bulk.integers(0, open_cells.size, size=count)]
+    return np.stack((xs[picked], ys[picked]), axis=1)
+
+
+def sample_start(
+    atlas: Atlas, spec: GoalSpec, traveller: Traveller, *, seed: int, settings: SamplingSettings | None = None,
+    judge: Judge | None = None,
+) -> tuple[Pose, float]:
+    """Return a random start for a goal, and the length of the reference way from it, metres.
+
+    It is free, outdoors, on ground that one can walk on and that the goal allows; the way from it to success is within
+    the settings' range. It faces anywhere.
+
+    Raises:
+        StartError: If none is found, with the reason.
+    """
+    chosen = settings or SamplingSettings()
+    judge = judge or _judge(atlas, spec, traveller, chosen, None)
+    if not judge.targets:
+        what = f"nothing in {atlas.world.name!r} satisfies {spec.text!r}"
+        raise StartError("start", [Fault(what, "a goal that something satisfies", "take another goal or world")])
+    places = free_places(atlas, traveller=traveller, count=_ATTEMPTS, seed=seed, forbidden=spec.forbidden)
+    if not len(places):
+        what = f"{atlas.world.name!r} has no place to start"
+        raise StartError("start", [Fault(what, "free ground outdoors that the goal allows")])
+    seen: list[float] = []
+    for attempt, (x_m, y_m) in enumerate(places):
+        # The straight line is the shortest: what is too far by it needs no search.
+        if judge.success(float(x_m), float(y_m)).nearest_m - chosen.success_radius_m > chosen.max_m:
+            seen.append(math.inf)
+            continue
+        length_m = judge.reference_length_m((float(x_m), float(y_m)), max_m=chosen.max_m)
+        if chosen.min_m <= length_m <= chosen.max_m:
+            heading_rad = 2.0 * math.pi * uniform(seed, "start heading", attempt)
+            return Pose(float(x_m), float(y_m), chosen.camera_height_m if traveller.flies else 0.0, heading_rad), length_m
+        seen.append(length_m)
+    near = sum(length < chosen.min_m for length in seen)
+    what = f"{len(seen)} random places in {atlas.world.name!r}: {near} too near to {spec.text!r}, {len(seen) - near} too far or cut off"
+    raise StartError("start", [Fault(what, f"a way of {chosen.min_m:g} to {chosen.max_m:g} m", "widen the range")])
+
+
+def sample_episodes(
+    atlas: Atlas,
+    *,
+    levels: Sequence[int] = (1, 2, 3, 4),
+    count: int,
+    seed: int,
+    traveller: Traveller,
+    settings: SamplingSettings | None = None,
+) -> tuple[Episode, ...]:
+    """Return random episodes in a world: levels in turn, goals of a level in a random order, each with its own start.
+
+    Goals that nothing satisfies, that cannot be reached, or that a blind declaration satisfies too often are left out.
+
+    Raises:
+        StartError: If a level has no goal left.
+        SettingsError: If the count is below 1 or no level is given.
+    """
+    chosen = settings or SamplingSettings()
+    if count < 1 or not levels:
+        raise SettingsError("sampling of episodes", [Fault(f"count {count}, levels {tuple(levels)}", "at least one of each")])
+    grader = Grader(atlas)
+    places = [(float(x), float(y)) for x, y in free_places(atlas, traveller=traveller, count=_BLIND_PLACES, seed=key_of(seed, "blind"))]
+    decks = {level: _shuffled(goals(level), seed) for level in levels}
+    judges: dict[str, Judge | None] = {}
+    found: list[Episode] = []
+    turn = dict.fromkeys(levels, 0)
+    while len(found) < count:
+        level = levels[len(found) % len(levels)]
+        episode = None
+        while decks[level] and episode is None:
+            goal = decks[level][turn[level] % len(decks[level])]
+            lap = turn[level]
+            try:
+                episode = _episode(atlas, goal, key_of(seed, goal.name, lap), lap, traveller, chosen, grader, judges, places)
+            except StartError:
+                # Indices of the goals behind it move up: the turn stays.
+                decks[level].remove(goal)
+                continue
+            turn[level] += 1
+        if episode is None:
+            what = f"level {level} has no goal left in {atlas.world.name!r}"
+            raise StartError("episodes", [Fault(what, "goals that can be reached and are not everywhere", "take another world")])
+        found.append(episode)
+    return tuple(found)
+
+
+def _episode(
+    atlas: Atlas, goal: CatalogueGoal, seed: int, lap: int, traveller: Traveller, settings: SamplingSettings,
+    grader: Grader, judges: dict[str, Judge | None], places: Sequence[tuple[float, float]],
+) -> Episode:
+    key = f"{goal.level}/{goal.name}"
+    spec = goal.spec(int(uniform(seed, "paraphrase") * len(goal.sentences)))
+    if key not in judges:
+        made = _judge(atlas, spec, traveller, settings, grader)
+        judges[key] = made if made.blind_success_rate(places) <= settings.max_blind_rate else None
+    judge = judges[key]
+    if judge is None:
+        raise StartError("episode", [Fault(f"{spec.text!r} is satisfied nearly everywhere", "a goal to be looked for")])
+    start, length_m = sample_start(atlas, judge.spec, traveller, seed=seed, settings=settings, judge=judge)
+    return Episode(
+        id=f"{atlas.world.name}/L{goal.level}/{goal.name}/{lap}",
+        world=atlas.world.name,
+        spec=spec,
+        start=start,
+        seed=seed,
+        reference_length_m=length_m,
+        time_limit_s=settings.time_limit_s,
+        success_radius_m=settings.success_radius_m,
+    )
+
+
+def _judge(atlas: Atlas, spec: GoalSpec, traveller: Traveller, settings: SamplingSettings, grader: Grader | None) -> Judge:
+    return Judge(
+        atlas, spec, traveller=traveller, success_radius_m=settings.success_radius_m,
+        camera_height_m=settings.camera_height_m, grader=grader,
+    )
+
+
+def _shuffled(listed: Sequence[CatalogueGoal], seed: int) -> list[CatalogueGoal]:
+    return sorted(listed, key=lambda goal: (uniform(seed, "order", goal.level, goal.name), goal.name))
