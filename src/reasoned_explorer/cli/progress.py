@@ -101,8 +101,11 @@ def _outcome_lines(summary: MissionSummary) -> Iterator[str]:
 
 
 def _ahead(step: StepRecord) -> str:
-    views: tuple[ViewRecord, ...] = step.views
-    return (views[0].caption or f"({views[0].caption_fault})") if views else ""
+    first_look = [view for view in step.views if view.key[1] == 0]
+    if not first_look:
+        return ""
+    view: ViewRecord = first_look[(len(first_look) - 1) // 2]
+    return view.caption or f"({view.caption_fault})"
 
 
 def _clipped(text: str) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from reasoned_explorer.clock import Clock, MixedClock, RealClock, VirtualClock
-from reasoned_explorer.evaluation.metrics import MissionOutcome, MissionScore, score_mission
+from reasoned_explorer.evaluation.metrics import MissionOutcome, MissionScore, score
 from reasoned_explorer.evaluation.oracle import OracleTruth
 from reasoned_explorer.evaluation.record_file import RecordWriter
 from reasoned_explorer.exploration.explorer import Exploration, Explorer, Parts
@@ -19,16 +19,16 @@ from reasoned_explorer.minds.context import MindContext
 from reasoned_explorer.minds.latency import latency_profile
 from reasoned_explorer.minds.ledger import CallRecord, Ledger
 from reasoned_explorer.minds.registry import make_minds
-from reasoned_explorer.model import LegOutcome, UnknownNameError
+from reasoned_explorer.model import LegOutcome, TrackPoint, UnknownNameError
 from reasoned_explorer.model.record import EpisodeRecord, MissionEnd, MissionHeader, MissionSummary, StepRecord
 from reasoned_explorer.perception.context import CaptionerContext
 from reasoned_explorer.perception.registry import CAPTIONERS
 from reasoned_explorer.planning.registry import make_planner
 from reasoned_explorer.simulation.eyes import Eyes
 from reasoned_explorer.simulation.vehicle import SimulatedVehicle, check_start
-from reasoned_explorer.task.judge import Judge
+from reasoned_explorer.task.judge import Judge, TrackReport
 from reasoned_explorer.task.reading import read_goal
-from reasoned_explorer.task.sampling import sample_start
+from reasoned_explorer.task.sampling import SamplingSettings, sample_start
 from reasoned_explorer.vehicles import VehicleProfile
 from reasoned_explorer.vehicles.registry import vehicle_profile
 from reasoned_explorer.world.atlas import Atlas
@@ -136,7 +136,13 @@ class Mission:
         self.goal = self.spec.goal
         self.profile = vehicle_profile(self.settings.vehicle)
         traveller = traveller_of(self.profile)
-        self.judge = Judge(self.atlas, self.spec, traveller=traveller, success_radius_m=self.settings.success_radius_m)
+        self.judge = Judge(
+            self.atlas,
+            self.spec,
+            traveller=traveller,
+            success_radius_m=self.settings.success_radius_m,
+            camera_height_m=self.profile.camera_height_m,
+        )
         self.start = self._start(start, traveller)
         if self.settings.clock not in CLOCKS:
             raise UnknownNameError("clock", self.settings.clock, tuple(CLOCKS))
@@ -197,14 +203,15 @@ class Mission:
         if start is not None:
             check_start(self.atlas, self.profile, start)
             return replace(start, z_m=self.profile.camera_height_m)
-        drawn = sample_start(
-            self.atlas,
-            self.spec,
-            traveller,
-            seed=self.settings.seed,
+        sampling = SamplingSettings(
             min_m=START_RANGE_M[0],
             max_m=START_RANGE_M[1],
-            judge=self.judge,
+            camera_height_m=self.profile.camera_height_m,
+            success_radius_m=self.settings.success_radius_m,
+            time_limit_s=self.settings.explorer.t_max_s,
+        )
+        drawn, _ = sample_start(
+            self.atlas, self.spec, traveller, seed=self.settings.seed, settings=sampling, judge=self.judge
         )
         return replace(drawn, z_m=self.profile.camera_height_m)
 
@@ -282,52 +289,68 @@ class Mission:
         return Exploration(MissionEnd.INTERRUPTED, "stopped by a person", ct_s, tt_s, plan_s, len(steps))
 
     def _summary(self, ended: Exploration, steps: list[StepRecord]) -> tuple[MissionSummary, MissionScore]:
-        track = track_of(self.start, steps)
-        judged = self.judge.judge_track(track, declared=ended.end is MissionEnd.FOUND)
-        length_m = float(np.hypot(*np.diff(track[:, :2], axis=0).T).sum()) if len(track) > 1 else 0.0
-        score = score_mission(
+        judged = self.judge.review(track_of(self.start, steps))
+        declared = ended.end is MissionEnd.FOUND
+        reference_m = self.judge.reference_length_m(self.start)
+        scored = score(
             MissionOutcome(
-                declared=ended.end is MissionEnd.FOUND,
-                success=judged.success,
+                mission_id=f"{self.atlas.world.name}|{self.goal.text}|{self.settings.seed}",
+                level=self.spec.level,
+                vehicle=self.profile.name,
+                declared=declared,
+                in_place=judged.success,
+                in_place_at=tuple((radius_m, judged.success_at(radius_m)) for radius_m, _ in judged.end.at_radius),
                 oracle_success=judged.oracle_success,
-                path_length_m=length_m,
-                reference_length_m=self.judge.reference_length_m(self.start),
-                distance_to_goal_m=judged.distance_to_goal_m,
-                ct_s=ended.ct_s,
-                tt_s=ended.tt_s,
-                plan_s=ended.plan_s,
-                t_max_s=self.settings.explorer.t_max_s,
+                path_length_m=judged.length_m,
+                reference_length_m=reference_m,
+                computing_s=ended.ct_s,
+                planner_computing_s=min(ended.plan_s, ended.ct_s),
+                travelling_s=ended.tt_s,
+                time_limit_s=self.settings.explorer.t_max_s,
+                distance_to_goal_m=judged.end.nearest_m,
             )
         )
         calls: dict[str, int] = {}
         for step in steps:
             for call in step.calls:
                 calls[call.role] = calls.get(call.role, 0) + 1
-        reference_m = self.judge.reference_length_m(self.start)
         summary = MissionSummary(
             end=ended.end,
             reason=ended.reason,
-            declared=ended.end is MissionEnd.FOUND,
-            success=score.success,
-            oracle_success=score.oracle_success,
-            compliant=judged.compliant,
-            spl=round(score.spl, 6),
-            casr=round(score.casr, 6),
-            path_length_m=round(length_m, 3),
-            reference_length_m=round(reference_m, 3) if np.isfinite(reference_m) else None,
-            distance_to_goal_m=_finite(judged.distance_to_goal_m),
+            declared=declared,
+            success=scored.success,
+            oracle_success=scored.oracle_success,
+            compliant=judged.compliance.compliant if self.spec.forbidden else None,
+            spl=round(scored.spl, 6),
+            casr=round(scored.casr, 6),
+            path_length_m=round(judged.length_m, 3),
+            reference_length_m=_finite(reference_m),
+            distance_to_goal_m=_finite(judged.end.nearest_m),
             ct_s=round(ended.ct_s, 6),
             tt_s=round(ended.tt_s, 6),
             plan_s=round(ended.plan_s, 6),
             steps=ended.steps,
             calls=dict(sorted(calls.items())),
-            radii={f"{radius_m:g}": hit for radius_m, hit in judged.radii},
-            judge=judged.reason,
+            radii={f"{radius_m:g}": hit for radius_m, hit in scored.success_at},
+            judge=self._verdict(judged),
             collisions=tuple(
                 leg.detail for step in steps for leg in step.legs if leg.outcome is LegOutcome.COLLISION
             ),
         )
-        return summary, score
+        return summary, scored
+
+    def _verdict(self, judged: TrackReport) -> str:
+        """Return what the judge says of the end, in words."""
+        if not judged.compliance.compliant:
+            return f"{judged.compliance.longest_stretch_m:.0f} m in one stretch on ground that the goal shuns"
+        end, objects = judged.end, self.atlas.world.objects
+        if end.success:
+            return f"{objects[end.object_id].object_class.noun} {end.distance_m:.0f} m away, in sight"
+        if np.isfinite(end.distance_m):
+            return f"in sight, but {end.distance_m:.0f} m away"
+        if end.nearest_m <= self.settings.success_radius_m:
+            return f"{end.nearest_m:.0f} m away, but not in sight"
+        return f"the nearest is {end.nearest_m:.0f} m away" if np.isfinite(end.nearest_m) else "there is none"
 
 
 def _finite(value: float | None) -> float | None:
@@ -339,13 +362,13 @@ def traveller_of(profile: VehicleProfile) -> Traveller:
     return Traveller(flies=profile.flies, radius_m=profile.radius_m, collides=profile.collides)
 
 
-def track_of(start: Pose, steps: list[StepRecord]) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Return the true way travelled, shape (n, 3): x_m, y_m, z_m; the start is in it, n ≥ 1."""
-    points = [(start.x_m, start.y_m, start.z_m)]
+def track_of(start: Pose, steps: list[StepRecord]) -> list[TrackPoint]:
+    """Return the true way travelled; the start is in it."""
+    track = [TrackPoint(0.0, start.x_m, start.y_m, start.z_m, start.heading_rad)]
     for step in steps:
         for leg in step.legs:
-            points += [(point.x_m, point.y_m, point.z_m) for point in leg.track]
-    return np.array(points, dtype=np.float64)
+            track += leg.track
+    return track
 
 
 def run_mission(

@@ -1,14 +1,157 @@
 """The picture of a mission: where it was looked for, what was thought of each way on, and where it ended."""
 
-import math
-from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from reasoned_explorer.evaluation.mission_marks import MarkStyle, paint_mission
-from reasoned_explorer.evaluation.mission_panel import write_panel
-from reasoned_explorer.evaluation.mission_trace import FRONTIER_STATES, MapFrontier, MapGoal, MissionTrace
-from reasoned_explorer.model.errors import Fault, RecordError
+from reasoned_explorer.evaluation.mission_marks import paint_mission, places_of
+from reasoned_explorer.evaluation.mission_panel import MARGIN_PT, footnotes, write_headline, write_panel
+from reasoned_explorer.evaluation.mission_trace import MapFrontier, MapGoal, MissionTrace
+from reasoned_explorer.model.errors import RecordError
+from reasoned_explorer.world.drawing import fitted_bounds
+from reasoned_explorer.world.drawing_style import Palette, wrapped
+from reasoned_explorer.world.lettering import Room, letter_streets, place_badges
+from reasoned_explorer.world.painting import Board, paint_world
+from reasoned_explorer.world.sheet import (
+    WIDTH_PT,
+    Sheet,
+    card,
+    check_target,
+    draw_north_arrow,
+    draw_scale_bar,
+    plain_settings,
+    save,
+    scale_bar_width_pt,
+)
+from reasoned_explorer.world.world import Bounds, World
+
+__all__ = ["LEAST_EXTENT_M", "MapFrontier", "MapGoal", "MissionTrace", "draw_mission"]
+
+#: However little happened, the map shows at least so many metres.
+LEAST_EXTENT_M = 150.0
+#: Height of the sheet: that of the A series lying on its side.
+_HEIGHT_PT = WIDTH_PT / 2.0**0.5
+_PANEL_PT = 208.0
+_GAP_PT = 18.0
+#: How far the world steps back behind the mission, 0 (not at all) to 1 (gone).
+_MUTED = 0.34
+
+
+def draw_mission(world: World, trace: MissionTrace, path: Path | str, *, width_px: int = 2800) -> None:
+    """Draw a mission into a file: a map of everything that happened and a panel with what came of it.
+
+    The sheet has the shape of the A series; the same mission always gives the same bytes (with the same version of
+    matplotlib).
+
+    Args:
+        world: Where it happened.
+        trace: What happened.
+        path: PNG, SVG or PDF by its suffix; the folder must exist. A file that is there is replaced, but only by a
+            whole one.
+        width_px: Width of a PNG, 300 to 12000; an SVG or PDF is 12 inches wide.
+
+    Raises:
+        RecordError: If the trace has numbers that are not finite or states that are unknown, if the width is no good
+            or if the file cannot be written; with all the reasons.
+    """
+    target = Path(path)
+    faults = [*check_target(target, width_px), *trace.faults()]
+    if faults:
+        raise RecordError("mission picture", faults)
+    with plain_settings():
+        sheet = compose_mission(world, trace)
+        save(sheet, target, width_px=width_px, title=trace.title, thanks=world.attribution, error=RecordError)
+
+
+def compose_mission(world: World, trace: MissionTrace) -> Sheet:
+    """Return the sheet with everything on it; to be called with plain settings of matplotlib."""
+    room_pt = WIDTH_PT - 2 * MARGIN_PT
+    headline = wrapped(trace.title, "serif-bold", 26.0, room_pt, 2) or ["Mission without a goal sentence"]
+    small = footnotes(trace, world.attribution, room_pt)
+    head = 27.0 + 27.0 * len(headline) + 25.0
+    foot = 16.0 + 11.0 * max(len(small), 1) + 8.0
+    sheet = Sheet(_HEIGHT_PT, Palette())
+    map_width, map_height = room_pt - _PANEL_PT - _GAP_PT, _HEIGHT_PT - head - foot
+    shape = map_height / map_width
+    shown = fitted_bounds(happened_in(trace), shapes=(shape, shape), least_m=LEAST_EXTENT_M)
+    shown = _moved_into(shown, world.bounds)
+    axes = sheet.map_axes(MARGIN_PT, foot, map_width, map_height, shown)
+    board = Board(axes, shown, shown.width_m / map_width, sheet.palette.muted(_MUTED))
+    paint_world(board, world)
+    room = Room(board)
+    classes = place_badges(board, world.objects, Room(board), share=0.86, alpha=0.62)
+    _write_scale(sheet, board, room, trace, (MARGIN_PT, foot))
+    paint_mission(board, trace, room)
+    letter_streets(board, world.ways, room, colour="#7b8088", limit=30)
+    write_headline(sheet, headline, trace.subtitle)
+    write_panel(
+        sheet,
+        trace,
+        classes,
+        left_pt=MARGIN_PT + map_width + _GAP_PT,
+        top_pt=foot + map_height,
+        bottom_pt=foot,
+    )
+    for place, (line, face) in enumerate(small):
+        sheet.write(MARGIN_PT, foot - 14.0 - 11.0 * place, line, size_pt=8.0, face=face, colour=sheet.palette.soft_ink)
+    return sheet
+
+
+def happened_in(trace: MissionTrace) -> Bounds:
+    """Return what a map of the mission must show: everything that happened and the goals close by, with a margin."""
+    places = [(trace.start.x_m, trace.start.y_m), (trace.end.x_m, trace.end.y_m), *trace.path_points]
+    places += [(frontier.x_m, frontier.y_m) for frontier in trace.frontiers]
+    places += [point for edge in trace.edges for point in edge]
+    lines = [np.array(places, dtype=np.float64), np.asarray(trace.track, dtype=np.float64).reshape(-1, 2)]
+    if trace.shortest_way is not None:
+        lines.append(trace.shortest_way)
+    points = np.concatenate(lines)
+    reach_m = trace.success_radius_m
+    for goal in trace.goals:
+        near = float(np.hypot(points[:, 0] - goal.x_m, points[:, 1] - goal.y_m).min()) <= 2.0 * reach_m + 10.0
+        if goal.reached or near:
+            lines.append(np.array([(goal.x_m - reach_m, goal.y_m - reach_m), (goal.x_m + reach_m, goal.y_m + reach_m)]))
+    points = np.concatenate(lines)
+    (west, south), (east, north) = points.min(axis=0), points.max(axis=0)
+    margin_m = max(15.0, 0.07 * max(east - west, north - south))
+    return Bounds(float(west - margin_m), float(south - margin_m), float(east + margin_m), float(north + margin_m))
+
+
+def _moved_into(shown: Bounds, world: Bounds) -> Bounds:
+    """Return the bounds moved so that they show as little as can be of what lies outside the world.
+
+    What happened stays in sight: nothing happens outside the world.
+    """
+    shift_x = _shift(shown.min_x_m, shown.max_x_m, world.min_x_m, world.max_x_m)
+    shift_y = _shift(shown.min_y_m, shown.max_y_m, world.min_y_m, world.max_y_m)
+    return Bounds(shown.min_x_m + shift_x, shown.min_y_m + shift_y, shown.max_x_m + shift_x, shown.max_y_m + shift_y)
+
+
+def _shift(low: float, high: float, least: float, most: float) -> float:
+    if high - low > most - least:
+        return 0.0
+    return max(least - low, 0.0) + min(most - high, 0.0)
+
+
+def _write_scale(
+    sheet: Sheet, board: Board, room: Room, trace: MissionTrace, map_corner_pt: tuple[float, float]
+) -> None:
+    """Lay scale and north arrow into the corner of the map where least happened."""
+    wide, high, inset = scale_bar_width_pt(board.metres_per_point, room_pt=112.0) + 70.0, 45.0, 6.0
+    map_width, map_height = board.points(board.bounds.width_m), board.points(board.bounds.height_m)
+    lefts, bottoms = (inset, map_width - wide - inset), (inset, map_height - high - inset)
+    corner_m = np.array([board.bounds.min_x_m, board.bounds.min_y_m])
+    marks = (np.vstack([places_of(trace), trace.track.reshape(-1, 2)]) - corner_m) / board.metres_per_point
+
+    def crowd(corner: tuple[float, float]) -> int:
+        low = np.array(corner) - 12.0
+        return int(((marks > low) & (marks < low + (wide + 24.0, high + 24.0))).all(axis=1).sum())
+
+    # Of equally quiet corners the first: lower left, lower right, upper left, upper right.
+    left, bottom = min(((x, y) for y in bottoms for x in lefts), key=crowd)
+    columns, rows = np.meshgrid(np.arange(left, left + wide, 4.0), np.arange(bottom, bottom + high, 4.0))
+    room.block(np.column_stack([columns.ravel(), rows.ravel()]) * board.metres_per_point + corner_m, 3.0)
+    left, bottom = left + map_corner_pt[0], bottom + map_corner_pt[1]
+    card(sheet, left, bottom, wide, high)
+    draw_north_arrow(sheet, left + 18.0, bottom + 18.0, size_pt=22.0)
+    draw_scale_bar(sheet, left + 42.0, bottom + 11.0, board.metres_per_point, room_pt=112.0)

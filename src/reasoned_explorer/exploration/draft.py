@@ -20,12 +20,20 @@ from reasoned_explorer.planning import FrontierScore, ImaginedNode, Plan
 
 @dataclass(slots=True)
 class LookDraft:
-    """One look: its scenes and what was said of them."""
+    """One look: its scenes from left to right, and what was said of them."""
 
     scenes: Sequence[Scene]
     verdicts: Sequence[Verdict] = ()
     scores: Sequence[FrontierScore] = ()
-    frontiers: list[int | None] = field(default_factory=list)
+    frontiers: dict[int, int] = field(default_factory=dict)
+
+    def from_the_middle(self) -> list[int]:
+        """Return the places of the scenes, the one in the middle first, of two equally far the left one first.
+
+        Frontiers are made in this order, so that of equal ones the one ahead is the older.
+        """
+        middle = (len(self.scenes) - 1) / 2.0
+        return sorted(range(len(self.scenes)), key=lambda index: (abs(index - middle), index))
 
     def freeze(self) -> list[ViewRecord]:
         """Return one record per view."""
@@ -48,7 +56,7 @@ class LookDraft:
                     confidence=round(verdict.confidence, 4),
                     evidence=verdict.evidence,
                     check_fault=verdict.fault,
-                    frontier=self.frontiers[index] if index < len(self.frontiers) else None,
+                    frontier=self.frontiers.get(index),
                 )
             )
         return views

@@ -188,6 +188,7 @@ class Explorer:
             await _cancel(planning)
             # Looking once more to make sure is acting, not thinking.
             step.think_s += self.parts.clock.now_s() - started_s - (step.look_s - looked_s)
+            step.plan_s = min(step.plan_s, step.think_s)
         look.scores = step.plan.scores
         self._expand(goal, look, step)
         return None
@@ -274,7 +275,8 @@ class Explorer:
     # Remember, choose, travel.
 
     def _expand(self, goal: Goal, look: LookDraft, step: StepDraft) -> None:
-        for scene, score in zip(look.scenes, look.scores, strict=True):
+        for index in look.from_the_middle():
+            scene, score = look.scenes[index], look.scores[index]
             viewpoint = scene.viewpoint or scene.waypoint
             pose = viewpoint.ahead(self.settings.step_m(score.q, goal.level))
             blocked_by = "the way ahead is blocked" if score.blocked else ""
@@ -284,7 +286,7 @@ class Explorer:
             visited = self.graph.nearest_point(pose.x_m, pose.y_m, self.settings.revisit_radius_m)
             if frontier.state is FrontierState.OPEN and visited not in (None, self._point):
                 self.graph.give_up(frontier, "already visited")
-            look.frontiers.append(frontier.id)
+            look.frontiers[index] = frontier.id
             step.touched[frontier.id] = frontier
 
     def _look_elsewhere(self, step: StepDraft) -> tuple[MissionEnd, str] | None:

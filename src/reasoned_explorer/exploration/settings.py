@@ -72,16 +72,12 @@ class ExplorerSettings:
         return high if q is None else low + (1.0 - min(5.0, max(0.0, q)) / 5.0) * (high - low)
 
     def bearings_rad(self, turn_rad: float = 0.0) -> list[float]:
-        """Return the bearings of a look's views, turned by ``turn_rad``; the one straight ahead comes first.
-
-        The order decides ties between frontiers of one step: what lies ahead is older than what lies aside.
-        """
+        """Return the bearings of a look's views from left to right, turned by ``turn_rad``."""
         if self.views == 1:
             return [turn_rad]
         # A full circle must not look in its first direction twice.
         gaps = self.views if self.sweep_rad >= 2 * math.pi - 1e-9 else self.views - 1
-        offsets = [self.sweep_rad * (index / gaps - 0.5) for index in range(self.views)]
-        return [turn_rad + offset for offset in sorted(offsets, key=lambda offset: (round(abs(offset), 9), offset))]
+        return [turn_rad + self.sweep_rad * (index / gaps - 0.5) for index in range(self.views)]
 
     def other_turns_rad(self) -> list[float]:
         """Return the turns by which a look is repeated at a place where nothing is left: behind, then in between."""

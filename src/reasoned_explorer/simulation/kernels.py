@@ -150,7 +150,8 @@ def mix(state: np.uint64) -> np.uint64:
 @njit(cache=True, error_model="numpy")
 def chain(key: np.uint64, part: int) -> np.uint64:
     """Return ``draws.key_of(seed, *keys, part)`` for ``key = draws.key_of(seed, *keys)``."""
-    return mix(key + _GOLDEN + np.uint64(part) * _PART)
+    mixed: np.uint64 = mix(key + _GOLDEN + np.uint64(part) * _PART)
+    return mixed
 
 
 @njit(cache=True, error_model="numpy")
@@ -185,13 +186,14 @@ def wall_distance(walls: Floats, row: int, x_m: float, y_m: float) -> float:
 @njit(cache=True, error_model="numpy")
 def disc_distance(discs: Floats, row: int, x_m: float, y_m: float) -> float:
     """Return the distance from a point to a disc's rim, negative within it."""
-    return math.hypot(discs[row, 0] - x_m, discs[row, 1] - y_m) - discs[row, 2]
+    distance: float = math.hypot(discs[row, 0] - x_m, discs[row, 1] - y_m) - discs[row, 2]
+    return distance
 
 
 @njit(cache=True, error_model="numpy")
 def clearance(walls: Floats, discs: Floats, x_m: float, y_m: float) -> float:
     """Return the distance from a point to the nearest obstacle; infinite without any."""
-    least = math.inf
+    least: float = math.inf
     for row in range(walls.shape[0]):
         least = min(least, wall_distance(walls, row, x_m, y_m))
     for row in range(discs.shape[0]):
@@ -203,8 +205,10 @@ def clearance(walls: Floats, discs: Floats, x_m: float, y_m: float) -> float:
 def _distance(walls: Floats, discs: Floats, item: int, x_m: float, y_m: float) -> float:
     """Return the distance to an obstacle: a wall, or a disc for items from the number of walls on."""
     if item < walls.shape[0]:
-        return wall_distance(walls, item, x_m, y_m)
-    return disc_distance(discs, item - walls.shape[0], x_m, y_m)
+        distance: float = wall_distance(walls, item, x_m, y_m)
+    else:
+        distance = disc_distance(discs, item - walls.shape[0], x_m, y_m)
+    return distance
 
 
 @njit(cache=True, error_model="numpy")
@@ -244,8 +248,8 @@ def first_touch(
 @njit(cache=True, error_model="numpy")
 def ground_code(codes: Codes, ground: Floats, x_m: float, y_m: float) -> int:
     """Return the code of the ground at a point; 0 (unknown) beyond the raster. ``ground``: min x, min y, cell."""
-    column = int(math.floor((x_m - ground[0]) / ground[2]))
-    row = int(math.floor((y_m - ground[1]) / ground[2]))
+    column = math.floor((x_m - ground[0]) / ground[2])
+    row = math.floor((y_m - ground[1]) / ground[2])
     if row < 0 or column < 0 or row >= codes.shape[0] or column >= codes.shape[1]:
         return 0
     return int(codes[row, column])
@@ -253,7 +257,7 @@ def ground_code(codes: Codes, ground: Floats, x_m: float, y_m: float) -> int:
 
 @njit(cache=True, error_model="numpy")
 def _within(bounds: Floats, x_m: float, y_m: float) -> bool:
-    return bounds[0] <= x_m <= bounds[2] and bounds[1] <= y_m <= bounds[3]
+    return bool(bounds[0] <= x_m <= bounds[2] and bounds[1] <= y_m <= bounds[3])
 
 
 @njit(cache=True, error_model="numpy")
@@ -275,7 +279,7 @@ def _first_contact(
     length, radius = math.hypot(x1_m - x0_m, y1_m - y0_m), body[BODY_RADIUS]
     if length == 0.0:
         return 1.0, END_NONE, -1
-    steps = max(1, int(math.ceil(2.0 * length / radius)))
+    steps = max(1, math.ceil(2.0 * length / radius))
     toe_x, toe_y = (x1_m - x0_m) / length * radius, (y1_m - y0_m) / length * radius
     for step in range(steps):
         ax, ay = x0_m + (x1_m - x0_m) * step / steps, y0_m + (y1_m - y0_m) * step / steps
@@ -446,7 +450,7 @@ def _sense(
 
 @njit(cache=True, error_model="numpy")
 def _keep_point(record: Floats, count: int, t_s: float, true: Floats) -> int:
-    row = min(count, record.shape[0] - 1)
+    row: int = min(count, record.shape[0] - 1)
     record[row, 0], record[row, 1], record[row, 2] = t_s, true[TRUE_X], true[TRUE_Y]
     record[row, 3] = true[TRUE_HEADING]
     return row + 1
@@ -459,7 +463,8 @@ def _off_line(memory: Floats, x_m: float, y_m: float) -> float:
     length = math.hypot(line_x, line_y)
     if length == 0.0:
         return 0.0
-    return ((y_m - memory[MEM_START_Y]) * line_x - (x_m - memory[MEM_START_X]) * line_y) / length
+    off: float = ((y_m - memory[MEM_START_Y]) * line_x - (x_m - memory[MEM_START_X]) * line_y) / length
+    return off
 
 
 @njit(cache=True, error_model="numpy")
@@ -490,15 +495,16 @@ def run_leg(
 ) -> int:
     """Run a leg that `follower_start` has set off, to its end and a while of standing; return the points recorded.
 
-    Arrays are changed in place. ``record`` has rows (seconds since the start, x, y, heading) and gets both ends;
+    After a contact the body backs off a little, so that it is free to go on in another direction. Arrays are changed in
+    place. ``record`` has rows (seconds since the start, x, y, heading) and gets both ends;
     ``tally`` is filled as the TALLY constants say. The draws of a tick are keyed by ``base`` and the tick's number.
     """
-    end, hit, standing, count = END_NONE, -1, 0, 0
+    end, hit, standing = END_NONE, -1, 0
     length, cross, driven, error, refused = 0.0, 0.0, 0, 0.0, 0
     back_x, back_y = 0.0, 0.0
     free_m = 0.0
     rate = 0.0
-    count = _keep_point(record, count, 0.0, true)
+    count: int = _keep_point(record, 0, 0.0, true)
     kept_t, kept_length = 0.0, 0.0
     tick = 0
     while True:
@@ -547,6 +553,7 @@ def run_leg(
                 free_m = 0.0
                 if end == END_NONE:
                     end, hit = how, what
+                    stand_ticks = max(stand_ticks, math.ceil((RECOIL_S + 0.4) / dt_s))
                     back_x, back_y = -RECOIL_MPS * dx / math.hypot(dx, dy), -RECOIL_MPS * dy / math.hypot(dx, dy)
                     length += step
                     count = _keep_point(record, count, (tick + 1) * dt_s, true)
@@ -577,8 +584,13 @@ def run_leg(
             driven += 1
         t_s = tick * dt_s
         moved = length - kept_length
-        if moved >= TRACK_M or (t_s - kept_t >= TRACK_S and moved >= TRACK_LEAST_M) or (
-            t_s - kept_t >= TRACK_S and abs(wrap_bearing(true[TRUE_HEADING] - record[count - 1, 3])) >= TRACK_LEAST_RAD
+        if (
+            moved >= TRACK_M
+            or (t_s - kept_t >= TRACK_S and moved >= TRACK_LEAST_M)
+            or (
+                t_s - kept_t >= TRACK_S
+                and abs(wrap_bearing(true[TRUE_HEADING] - record[count - 1, 3])) >= TRACK_LEAST_RAD
+            )
         ):
             count = _keep_point(record, count, t_s, true)
             kept_t, kept_length = t_s, length

@@ -38,6 +38,7 @@ class End(StrEnum):
     ARRIVED = "arrived"
     STUCK = "stuck"
     TIME = "out of time"
+    CUT = "cut short"
     WALL = "wall"
     DISC = "disc"
     GROUND = "ground"
@@ -265,7 +266,9 @@ class Body:
         due_s = distance_m / self.profile.speed_mps + 2.0 * math.pi / self.profile.turn_rate_radps
         self._set_off(target.x_m, target.y_m, heading, control.PHASE_DRIVE)
         stand_s = min(self.profile.settle_s, _STAND_S)
-        motion = self._run(leg, due_s, distance_m, stand_s, limit_s, walls, discs)
+        motion = self._run(
+            leg, due_s=due_s, distance_m=distance_m, stand_s=stand_s, limit_s=limit_s, walls=walls, discs=discs
+        )
         rest_s = self.profile.settle_s - stand_s
         if limit_s is None and rest_s > 0.0:
             self.wait(rest_s)
@@ -278,7 +281,7 @@ class Body:
         pose = self.pose
         self._set_off(pose.x_m, pose.y_m, heading_rad, control.PHASE_FACE)
         due_s = 2.0 * math.pi / self.profile.turn_rate_radps
-        return self._run(leg, due_s, 0.0, 0.0, None, NO_WALLS, NO_DISCS)
+        return self._run(leg, due_s=due_s)
 
     def wait(self, duration_s: float) -> None:
         """Let seconds pass in which the body stands still."""
@@ -319,12 +322,13 @@ class Body:
     def _run(
         self,
         leg: int,
+        *,
         due_s: float,
-        distance_m: float,
-        stand_s: float,
-        limit_s: float | None,
-        walls: Floats,
-        discs: Floats,
+        distance_m: float = 0.0,
+        stand_s: float = 0.0,
+        limit_s: float | None = None,
+        walls: Floats = NO_WALLS,
+        discs: Floats = NO_DISCS,
     ) -> Motion:
         if limit_s is None:
             max_ticks = math.ceil((3.0 * due_s + 10.0) * TICK_HZ)
@@ -364,8 +368,9 @@ class Body:
         points[:, 3] %= 2.0 * math.pi
         points[points[:, 3] >= 2.0 * math.pi, 3] = 0.0
         ticks, driven = tally[kernels.TALLY_TICKS], tally[kernels.TALLY_DRIVEN]
+        end = _ENDS[int(tally[kernels.TALLY_END])]
         return Motion(
-            end=_ENDS[int(tally[kernels.TALLY_END])],
+            end=End.CUT if end is End.TIME and limit_s is not None else end,
             hit=int(tally[kernels.TALLY_HIT]),
             duration_s=float(ticks) * TICK_S,
             length_m=float(tally[kernels.TALLY_LENGTH]),

@@ -54,7 +54,9 @@ class ComplianceReport:
     violation_at_m: float = math.inf
 
 
-def compliance_of(points: Sequence[tuple[float, float]], ground: GroundCodes, forbidden: frozenset[Ground]) -> ComplianceReport:
+def compliance_of(
+    points: Sequence[tuple[float, float]], ground: GroundCodes, forbidden: frozenset[Ground]
+) -> ComplianceReport:
     """Return whether a track complied.
 
     Args:

@@ -23,7 +23,7 @@ class Episode:
         spec: What the goal truly asks for; the robot gets `goal` only.
         start: Where it starts, and which way it faces.
         seed: Of the mission's own draws.
-        reference_length_m: The shortest compliant way to success, metres; infinity where there is none or it is unknown.
+        reference_length_m: The shortest compliant way to success, metres; infinity where none is known.
         time_limit_s: T_max, seconds.
         success_radius_m: Metres.
     """
@@ -86,8 +86,14 @@ class Episode:
             GoalError: If the goal cannot be read.
         """
         kinds: dict[str, type | tuple[type, ...]] = {
-            "id": str, "world": str, "goal": str, "start": list, "seed": int, "reference_length_m": (int, float, type(None)),
-            "time_limit_s": (int, float), "success_radius_m": (int, float),
+            "id": str,
+            "world": str,
+            "goal": str,
+            "start": list,
+            "seed": int,
+            "reference_length_m": (int, float, type(None)),
+            "time_limit_s": (int, float),
+            "success_radius_m": (int, float),
         }
         faults = [
             Fault(f"{key} is {data.get(key)!r:.60}", "an entry as `as_dict` writes it")

@@ -35,7 +35,7 @@ class Condition:
     """How a thing must stand to something else; it holds where it holds for one of the alternatives.
 
     Attributes:
-        relation: NEAR: footprints within ``distance_m``. UNDER: covered by a crown, a shelter or a roof. ON: in contact.
+        relation: NEAR: footprints within ``distance_m``; UNDER: covered by a crown, shelter or roof; ON: in contact.
         classes: Object classes that it may stand so to, sorted.
         grounds: Grounds that it may stand so to, sorted; UNDER a ground (a wood) means standing on it.
         buildings: Whether buildings count too; UNDER a building means under a roof that one can walk under.

@@ -60,13 +60,17 @@ def read_table(text: str) -> tuple[Affordance, ...]:
             try:
                 rows.append(_row(row))
             except GoalError as error:
-                faults += [Fault(f"{entry['name']}: row {row!r}: {fault.what}", fault.expected) for fault in error.faults]
+                faults += [
+                    Fault(f"{entry['name']}: row {row!r}: {fault.what}", fault.expected) for fault in error.faults
+                ]
         if not any(row.grade == 2 for row in rows):
             faults.append(Fault(f"{entry['name']}: no row has grade 2", "something that passes"))
         phrases = tuple(tuple(phrase.split()) for phrase in entry["phrases"])
         found.append(Affordance(entry["name"], entry["asks"], phrases, tuple(rows)))
     names = [item.name for item in found]
-    faults += [Fault(f"{name!r} stands twice", "each name once") for name in sorted({n for n in names if names.count(n) > 1})]
+    faults += [
+        Fault(f"{name!r} stands twice", "each name once") for name in sorted({n for n in names if names.count(n) > 1})
+    ]
     if not found:
         faults.append(Fault("the table is empty", "at least one [[affordance]]"))
     if faults:

@@ -182,12 +182,12 @@ class Judge:
         steps = np.hypot(*np.diff(flat, axis=0).T) if len(flat) > 1 else np.empty(0)
         at = np.concatenate(([0.0], np.cumsum(steps)))
         ticks = np.unique(np.concatenate((at, np.arange(0.0, at[-1], _TRACK_STEP_M))))
+        in_time = ticks < compliance.violation_at_m
+        xs, ys = np.interp(ticks, at, flat[:, 0])[in_time], np.interp(ticks, at, flat[:, 1])[in_time]
         oracle_at_m = math.inf
-        for tick, x, y in zip(ticks, np.interp(ticks, at, flat[:, 0]), np.interp(ticks, at, flat[:, 1]), strict=True):
-            if tick >= compliance.violation_at_m:
-                break
-            if self.success(float(x), float(y)).success:
-                oracle_at_m = float(tick)
+        for place in self._near_a_target(xs, ys):
+            if self.success(float(xs[place]), float(ys[place])).success:
+                oracle_at_m = float(ticks[place])
                 break
         return TrackReport(
             end=self.success(*points[-1]),
@@ -237,6 +237,14 @@ class Judge:
     @cached_property
     def _slack_m(self) -> float:
         return max((target.slack_m for target in self.targets), default=0.0)
+
+    def _near_a_target(self, xs_m: NDArray[np.float64], ys_m: NDArray[np.float64]) -> list[int]:
+        """Return which points are within the success radius of something that passes, rising; sight is not asked."""
+        if not self.targets:
+            return []
+        reach_m = self.success_radius_m + self._slack_m
+        pairs = self._index.query(shapely.points(xs_m, ys_m), predicate="dwithin", distance=reach_m)
+        return [int(place) for place in np.unique(pairs[0])]
 
     def _sees(self, eye: tuple[float, float, float], target: Target) -> bool:
         """Return whether there is a line of sight to the thing: to its nearest point, its middle or its corners."""
@@ -330,7 +338,7 @@ class Judge:
         return self._cells[place]
 
     def _way_out(self, x_m: float, y_m: float) -> tuple[float, tuple[float, float]]:
-        """Return how far it is from a start to compliant ground, and where that is; (0, the start) where it is there."""
+        """Return how far compliant ground is from a start, and where; 0 m and the start itself if it is there."""
         forbidden = self.spec.forbidden
         ways = self.atlas.geodesics
         if not forbidden:
@@ -349,6 +357,8 @@ def _xy(start: Pose | tuple[float, float]) -> tuple[float, float]:
 
 
 def _check_finite(**values: float) -> None:
-    faults = [Fault(f"{name} is {value}", "a finite number") for name, value in values.items() if not math.isfinite(value)]
+    faults = [
+        Fault(f"{name} is {value}", "a finite number") for name, value in values.items() if not math.isfinite(value)
+    ]
     if faults:
         raise InputError("place to judge", faults)

@@ -2,6 +2,7 @@
 
 import re
 import unicodedata
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum, auto
 from functools import cache
@@ -128,35 +129,21 @@ def _within(parts: list[str], place: int) -> tuple[Token, int] | None:
 
 @cache
 def _table() -> tuple[dict[tuple[str, ...], Token], int]:
-    table: dict[tuple[str, ...], Token] = {}
-
-    def add(phrase: tuple[str, ...], kind: Kind, value: Any = None) -> None:
-        table[phrase] = Token(kind, " ".join(phrase), value)
-
+    paths = words.path_markers().items()
     # Later entries win over earlier ones of the same words.
-    for word in words.SMALL_WORDS:
-        add((word,), Kind.SMALL)
-    for noun_phrase, noun in words.nouns().items():
-        add(noun_phrase, Kind.NOUN, noun)
-    for phrase, relation in words.relations().items():
-        add(phrase, Kind.RELATION, relation)
-    for phrase, marker in words.path_markers().items():
-        if phrase not in words.relations() or not marker[0]:
-            add(phrase, Kind.PATH, marker)
-    for phrase, condition in words.qualities().items():
-        add(phrase, Kind.QUALITY, condition)
-    for phrase, test in words.attributes().items():
-        add(phrase, Kind.ATTRIBUTE, test)
-    for item in affordances().values():
-        for phrase in item.phrases:
-            add(phrase, Kind.AFFORDANCE, item)
-    for phrase in words.LEADS:
-        add(phrase, Kind.LEAD)
-    for phrase in words.CLOSERS:
-        add(phrase, Kind.CLOSER)
-    for word in ("but", "then", "while"):
-        add((word,), Kind.BREAK)
-    add(("and",), Kind.AND)
-    add(("or",), Kind.OR)
-    add(("nor",), Kind.AND)
+    listed: list[tuple[Kind, Iterable[tuple[tuple[str, ...], Any]]]] = [
+        (Kind.SMALL, (((word,), None) for word in sorted(words.SMALL_WORDS))),
+        (Kind.NOUN, words.nouns().items()),
+        (Kind.RELATION, words.relations().items()),
+        (Kind.PATH, ((p, marker) for p, marker in paths if p not in words.relations() or not marker[0])),
+        (Kind.QUALITY, words.qualities().items()),
+        (Kind.ATTRIBUTE, words.attributes().items()),
+        (Kind.AFFORDANCE, ((phrase, item) for item in affordances().values() for phrase in item.phrases)),
+        (Kind.LEAD, ((phrase, None) for phrase in words.LEADS)),
+        (Kind.CLOSER, ((phrase, None) for phrase in words.CLOSERS)),
+        (Kind.BREAK, (((word,), None) for word in ("but", "then", "while"))),
+        (Kind.AND, (((word,), None) for word in ("and", "nor"))),
+        (Kind.OR, ((("or",), None),)),
+    ]
+    table = {phrase: Token(kind, " ".join(phrase), value) for kind, entries in listed for phrase, value in entries}
     return table, max(len(phrase) for phrase in table)

@@ -74,7 +74,9 @@ def _nothing(unread: Sequence[str]) -> Fault:
     classes = ", ".join(item.noun for item in OBJECT_CLASSES.values())
     hint = f"did you mean {' or '.join(list(near)[:3])}? " if near else ""
     what = "it asks for nothing that the judge can recognise in a world"
-    expected = f"one of the things that the judge knows ({classes}) or something to do, such as 'somewhere to take a nap'"
+    expected = (
+        f"one of the things that the judge knows ({classes}) or something to do, such as 'somewhere to take a nap'"
+    )
     return Fault(what, expected, hint.strip())
 
 
@@ -115,10 +117,11 @@ class _Reader:
             self._at += 1
             if token.kind in handlers:
                 handlers[token.kind](token)
-            elif token.kind in {Kind.AND, Kind.OR, Kind.BREAK, Kind.LEAD}:
+            elif token.kind in {Kind.AND, Kind.OR, Kind.LEAD}:
+                self._joint = token.kind
+            elif token.kind is Kind.BREAK and self._joint not in {Kind.AND, Kind.OR}:
                 # ", and": the stronger of the two decides.
-                if not (token.kind is Kind.BREAK and self._joint in {Kind.AND, Kind.OR}):
-                    self._joint = token.kind
+                self._joint = token.kind
             if token.kind not in {Kind.SMALL, Kind.WORD}:
                 self._last = token.kind
 
@@ -187,16 +190,16 @@ class _Reader:
         noun: words.Noun = token.value
         if not noun.classes:
             self._groundless(token, noun)
-        elif not self.nouns:
-            self._head(noun)
-        elif self._joint is Kind.OR:
+        elif not self.nouns or self._joint is Kind.OR:
             self._head(noun)
         elif self._joint in {Kind.AND, Kind.LEAD}:
             what = f"it asks for several things, {token.text!r} among them"
             self.faults.append(Fault(what, "one thing at a time", "say 'or', or ask for one of them"))
         else:
             between = " ".join(self._since_head)
-            what = f"how {token.text!r} belongs to what is sought is not understood" + (f" ({between!r})" if between else "")
+            what = f"how {token.text!r} belongs to what is sought is not understood" + (
+                f" ({between!r})" if between else ""
+            )
             self.faults.append(Fault(what, f"a relation that the judge knows: {_RELATIONS_HELP}"))
 
     def _head(self, noun: words.Noun) -> None:
@@ -212,12 +215,12 @@ class _Reader:
             kind = "a building" if noun.buildings else "ground"
             what = f"{token.text!r} is {kind}, and the judge grades only things as goals"
             known = ", ".join(item.noun for item in OBJECT_CLASSES.values())
-            self.faults.append(Fault(what, f"one of: {known}", f"ask for something that is on or near the {token.text}"))
+            self.faults.append(
+                Fault(what, f"one of: {known}", f"ask for something that is on or near the {token.text}")
+            )
 
     def _relation(self, token: Token) -> None:
         relation, negated, distance_m = token.value
-        if token.text == "at" and relation is Relation.NEAR:
-            negated = False
         listed = self._listed()
         if not listed:
             self._dangling(token)
@@ -226,23 +229,25 @@ class _Reader:
             self.faults.append(Fault(f"{token.text!r}", "a distance above 0 and up to 100 m"))
             return
         for alternatives in listed:
-            self._condition(token, relation, negated, distance_m, alternatives)
+            self._condition(
+                token, Condition(relation, buildings=True, distance_m=distance_m, negated=negated), alternatives
+            )
         self._joint = None
         self._since_head.clear()
 
-    def _condition(
-        self, token: Token, relation: Relation, negated: bool, distance_m: float, alternatives: Sequence[words.Noun]  # noqa: FBT001
-    ) -> None:
-        classes = sorted({name for noun in alternatives for name in noun.classes})
-        grounds = sorted({ground for noun in alternatives for ground in noun.grounds})
+    def _condition(self, token: Token, frame: Condition, alternatives: Sequence[words.Noun]) -> None:
+        """Add a condition: the relation of a frame to any of the nouns."""
+        classes = tuple(sorted({name for noun in alternatives for name in noun.classes}))
+        grounds = tuple(sorted({ground for noun in alternatives for ground in noun.grounds}))
         buildings = any(noun.buildings for noun in alternatives)
+        relation = frame.relation
         if relation is Relation.ON and not grounds and all(OBJECT_CLASSES[n].kind == "place" for n in classes):
             # One is "in a cafe" or "at" it: what is judged is being beside its entrance.
             relation = Relation.NEAR
         if relation is Relation.UNDER and set(grounds) - {Ground.WOOD}:
             self.faults.append(Fault(f"nothing is {token.text} ground", "under a tree, a shelter or a roof"))
             return
-        self.conditions.append(Condition(relation, tuple(classes), tuple(grounds), buildings, distance_m, negated))
+        self.conditions.append(replace(frame, relation=relation, classes=classes, grounds=grounds, buildings=buildings))
 
     def _dangling(self, token: Token) -> None:
         start = self._at
@@ -254,7 +259,9 @@ class _Reader:
             return
         near = difflib.get_close_matches(following, known_words(), n=3, cutoff=0.75)
         hint = f"did you mean {' or '.join(near)}?" if near else ""
-        self.faults.append(Fault(f"{token.text!r} what? {following!r} is not known", "a thing or a ground that is known", hint))
+        self.faults.append(
+            Fault(f"{token.text!r} what? {following!r} is not known", "a thing or a ground that is known", hint)
+        )
 
     def _listed(self) -> list[list[words.Noun]]:
         """Read "a tree and a bench or a lamp" from here on: all of (any of)."""
@@ -302,7 +309,12 @@ class _Reader:
 
     def _path(self, token: Token) -> None:
         is_wanted, whatever_follows = token.value
-        if token.text in words.relation_texts() and self._last in {Kind.NOUN, Kind.QUALITY, Kind.ATTRIBUTE, Kind.AFFORDANCE}:
+        if token.text in words.relation_texts() and self._last in {
+            Kind.NOUN,
+            Kind.QUALITY,
+            Kind.ATTRIBUTE,
+            Kind.AFFORDANCE,
+        }:
             # "a bench not on the grass" says where the bench is; ", not on the grass" says where to walk.
             self._relation(Token(Kind.RELATION, token.text, words.relations()[tuple(token.text.split())]))
             return
@@ -316,7 +328,14 @@ class _Reader:
                 else:
                     self.shunned.update(noun.grounds)
             # "stay on the paths, but not on the steps": the narrower word takes away from the wider one.
-            self.exceptions |= not is_wanted and token.text.split()[0] in {"but", "and", "not", "never", "rather", "instead"}
+            self.exceptions |= not is_wanted and token.text.split()[0] in {
+                "but",
+                "and",
+                "not",
+                "never",
+                "rather",
+                "instead",
+            }
             self._joint = None
             return
         self._at = start

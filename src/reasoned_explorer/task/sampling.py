@@ -16,6 +16,7 @@ from reasoned_explorer.task.goal_spec import GoalSpec
 from reasoned_explorer.task.judge import Judge
 from reasoned_explorer.task.targets import Grader
 from reasoned_explorer.world.atlas import Atlas
+from reasoned_explorer.world.freespace import Grid
 from reasoned_explorer.world.geodesic import Traveller
 from reasoned_explorer.world.taxonomy import IMPASSABLE_ON_FOOT, Ground
 
@@ -23,6 +24,7 @@ from reasoned_explorer.world.taxonomy import IMPASSABLE_ON_FOOT, Ground
 MAX_BLIND_RATE = 0.10
 _BLIND_PLACES = 300
 _ATTEMPTS = 60
+_DRAWS, _CELLS_A_DRAW = 20, 2000
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +65,7 @@ class SamplingSettings:
 def free_places(
     atlas: Atlas, *, traveller: Traveller, count: int, seed: int, forbidden: frozenset[Ground] = frozenset()
 ) -> NDArray[np.float64]:
-    """Return random places where a mission could begin: free for the traveller, outdoors, on ground that one can walk on.
+    """Return random places where a mission could begin: free for the traveller, outdoors, on walkable ground.
 
     Unknown ground is taken only where there is no other. Flyers start over ground that one can walk on, too.
 
@@ -78,24 +80,44 @@ def free_places(
         ENU metres, shape (n, 2).
     """
     space = atlas.geodesics.space(traveller, shunned=forbidden)
-    grid = space.grid
-    rows, cols = np.nonzero(space.free)
-    xs, ys = grid.min_x_m + (cols + 0.5) * grid.cell_m, grid.min_y_m + (rows + 0.5) * grid.cell_m
-    codes = atlas.ground.at_many(xs, ys)
-    refused = np.zeros(256, dtype=np.bool_)
-    refused[[int(ground) for ground in IMPASSABLE_ON_FOOT | forbidden | {Ground.UNKNOWN}]] = True
-    open_cells = np.flatnonzero(~refused[codes])
-    if not open_cells.size:
-        open_cells = np.flatnonzero(codes == Ground.UNKNOWN)
-    if not open_cells.size:
-        return np.empty((0, 2))
+    grid, free = space.grid, space.free.ravel()
     bulk = np.random.Generator(np.random.PCG64(key_of(seed, "free places")))
-    picked = open_cells[bulk.integers(0, open_cells.size, size=count)]
-    return np.stack((xs[picked], ys[picked]), axis=1)
+    taken = np.empty(0, dtype=np.int64)
+    for _ in range(_DRAWS):
+        cells = bulk.integers(0, free.size, size=_CELLS_A_DRAW)
+        cells = cells[free[cells]]
+        taken = np.concatenate((taken, cells[_is_walkable(atlas, grid, cells, forbidden | {Ground.UNKNOWN})]))
+        if taken.size >= count:
+            break
+    if taken.size < count:
+        # Free ground is rare: look at every cell of it.
+        everywhere = np.flatnonzero(free)
+        for refused in (forbidden | {Ground.UNKNOWN}, forbidden):
+            left = everywhere[_is_walkable(atlas, grid, everywhere, refused)]
+            if left.size:
+                taken = left[bulk.integers(0, left.size, size=count)]
+                break
+    return np.stack(_middles(grid, taken[:count]), axis=1)
+
+
+def _is_walkable(atlas: Atlas, grid: Grid, cells: NDArray[np.int64], refused: frozenset[Ground]) -> NDArray[np.bool_]:
+    codes = np.zeros(256, dtype=np.bool_)
+    codes[[int(ground) for ground in IMPASSABLE_ON_FOOT | refused]] = True
+    return ~codes[atlas.ground.at_many(*_middles(grid, cells))]
+
+
+def _middles(grid: Grid, cells: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    rows, cols = np.divmod(cells, grid.cols)
+    return grid.min_x_m + (cols + 0.5) * grid.cell_m, grid.min_y_m + (rows + 0.5) * grid.cell_m
 
 
 def sample_start(
-    atlas: Atlas, spec: GoalSpec, traveller: Traveller, *, seed: int, settings: SamplingSettings | None = None,
+    atlas: Atlas,
+    spec: GoalSpec,
+    traveller: Traveller,
+    *,
+    seed: int,
+    settings: SamplingSettings | None = None,
     judge: Judge | None = None,
 ) -> tuple[Pose, float]:
     """Return a random start for a goal, and the length of the reference way from it, metres.
@@ -124,10 +146,12 @@ def sample_start(
         length_m = judge.reference_length_m((float(x_m), float(y_m)), max_m=chosen.max_m)
         if chosen.min_m <= length_m <= chosen.max_m:
             heading_rad = 2.0 * math.pi * uniform(seed, "start heading", attempt)
-            return Pose(float(x_m), float(y_m), chosen.camera_height_m if traveller.flies else 0.0, heading_rad), length_m
+            return Pose(
+                float(x_m), float(y_m), chosen.camera_height_m if traveller.flies else 0.0, heading_rad
+            ), length_m
         seen.append(length_m)
     near = sum(length < chosen.min_m for length in seen)
-    what = f"{len(seen)} random places in {atlas.world.name!r}: {near} too near to {spec.text!r}, {len(seen) - near} too far or cut off"
+    what = f"{len(seen)} random places in {atlas.world.name!r} for {spec.text!r}: {near} too near, the others too far"
     raise StartError("start", [Fault(what, f"a way of {chosen.min_m:g} to {chosen.max_m:g} m", "widen the range")])
 
 
@@ -150,62 +174,84 @@ def sample_episodes(
     """
     chosen = settings or SamplingSettings()
     if count < 1 or not levels:
-        raise SettingsError("sampling of episodes", [Fault(f"count {count}, levels {tuple(levels)}", "at least one of each")])
-    grader = Grader(atlas)
-    places = [(float(x), float(y)) for x, y in free_places(atlas, traveller=traveller, count=_BLIND_PLACES, seed=key_of(seed, "blind"))]
-    decks = {level: _shuffled(goals(level), seed) for level in levels}
-    judges: dict[str, Judge | None] = {}
-    found: list[Episode] = []
-    turn = dict.fromkeys(levels, 0)
-    while len(found) < count:
-        level = levels[len(found) % len(levels)]
-        episode = None
-        while decks[level] and episode is None:
-            goal = decks[level][turn[level] % len(decks[level])]
-            lap = turn[level]
+        raise SettingsError(
+            "sampling of episodes", [Fault(f"count {count}, levels {tuple(levels)}", "at least one of each")]
+        )
+    dealer = _Dealer(atlas, traveller, seed, chosen)
+    return tuple(dealer.deal(levels[place % len(levels)]) for place in range(count))
+
+
+class _Dealer:
+    """Deals episodes of one world: goals of each level from a shuffled deck, round after round."""
+
+    def __init__(self, atlas: Atlas, traveller: Traveller, seed: int, settings: SamplingSettings) -> None:
+        self._atlas, self._traveller, self._seed, self._settings = atlas, traveller, seed, settings
+        self._grader = Grader(atlas)
+        places = free_places(atlas, traveller=traveller, count=_BLIND_PLACES, seed=key_of(seed, "blind"))
+        self._places = [(float(x), float(y)) for x, y in places]
+        self._decks: dict[int, list[CatalogueGoal]] = {}
+        self._rounds: dict[tuple[int, str], int] = {}
+        self._judges: dict[tuple[int, str], Judge] = {}
+
+    def deal(self, level: int) -> Episode:
+        """Return the next episode of a level; goals that cannot be posed leave the deck.
+
+        Raises:
+            StartError: If the deck is empty.
+        """
+        if level not in self._decks:
+            self._decks[level] = _shuffled(goals(level), self._seed)
+        deck = self._decks[level]
+        while deck:
+            goal = deck.pop(0)
             try:
-                episode = _episode(atlas, goal, key_of(seed, goal.name, lap), lap, traveller, chosen, grader, judges, places)
+                episode = self._episode(goal)
             except StartError:
-                # Indices of the goals behind it move up: the turn stays.
-                decks[level].remove(goal)
                 continue
-            turn[level] += 1
-        if episode is None:
-            what = f"level {level} has no goal left in {atlas.world.name!r}"
-            raise StartError("episodes", [Fault(what, "goals that can be reached and are not everywhere", "take another world")])
-        found.append(episode)
-    return tuple(found)
+            deck.append(goal)
+            return episode
+        what = f"level {level} has no goal left in {self._atlas.world.name!r}"
+        expected = "goals that something satisfies, that can be reached and that are not everywhere"
+        raise StartError("episodes", [Fault(what, expected, "take another world or a wider range")])
+
+    def _episode(self, goal: CatalogueGoal) -> Episode:
+        key = goal.level, goal.name
+        lap = self._rounds.get(key, 0)
+        self._rounds[key] = lap + 1
+        seed = key_of(self._seed, "episode", goal.level, goal.name, lap)
+        spec = goal.spec(int(uniform(seed, "paraphrase") * len(goal.sentences)))
+        if key not in self._judges:
+            judge = _judge(self._atlas, spec, self._traveller, self._settings, self._grader)
+            if judge.blind_success_rate(self._places) > self._settings.max_blind_rate:
+                raise StartError(
+                    "episode", [Fault(f"{spec.text!r} is satisfied everywhere", "a goal to be looked for")]
+                )
+            self._judges[key] = judge
+        start, length_m = sample_start(
+            self._atlas, spec, self._traveller, seed=seed, settings=self._settings, judge=self._judges[key]
+        )
+        return Episode(
+            id=f"{self._atlas.world.name}/L{goal.level}/{goal.name}/{lap}",
+            world=self._atlas.world.name,
+            spec=spec,
+            start=start,
+            seed=seed,
+            reference_length_m=length_m,
+            time_limit_s=self._settings.time_limit_s,
+            success_radius_m=self._settings.success_radius_m,
+        )
 
 
-def _episode(
-    atlas: Atlas, goal: CatalogueGoal, seed: int, lap: int, traveller: Traveller, settings: SamplingSettings,
-    grader: Grader, judges: dict[str, Judge | None], places: Sequence[tuple[float, float]],
-) -> Episode:
-    key = f"{goal.level}/{goal.name}"
-    spec = goal.spec(int(uniform(seed, "paraphrase") * len(goal.sentences)))
-    if key not in judges:
-        made = _judge(atlas, spec, traveller, settings, grader)
-        judges[key] = made if made.blind_success_rate(places) <= settings.max_blind_rate else None
-    judge = judges[key]
-    if judge is None:
-        raise StartError("episode", [Fault(f"{spec.text!r} is satisfied nearly everywhere", "a goal to be looked for")])
-    start, length_m = sample_start(atlas, judge.spec, traveller, seed=seed, settings=settings, judge=judge)
-    return Episode(
-        id=f"{atlas.world.name}/L{goal.level}/{goal.name}/{lap}",
-        world=atlas.world.name,
-        spec=spec,
-        start=start,
-        seed=seed,
-        reference_length_m=length_m,
-        time_limit_s=settings.time_limit_s,
-        success_radius_m=settings.success_radius_m,
-    )
-
-
-def _judge(atlas: Atlas, spec: GoalSpec, traveller: Traveller, settings: SamplingSettings, grader: Grader | None) -> Judge:
+def _judge(
+    atlas: Atlas, spec: GoalSpec, traveller: Traveller, settings: SamplingSettings, grader: Grader | None
+) -> Judge:
     return Judge(
-        atlas, spec, traveller=traveller, success_radius_m=settings.success_radius_m,
-        camera_height_m=settings.camera_height_m, grader=grader,
+        atlas,
+        spec,
+        traveller=traveller,
+        success_radius_m=settings.success_radius_m,
+        camera_height_m=settings.camera_height_m,
+        grader=grader,
     )
 
 

@@ -98,14 +98,15 @@ class Grader:
         ys = np.arange(south + spacing_m / 2.0, north, spacing_m)
         grid_x, grid_y = (axis.ravel() for axis in np.meshgrid(xs, ys))
         inside = shapely.contains_xy(shape, grid_x, grid_y)
-        spots = [shapely.points(grid_x[inside], grid_y[inside]), shapely.points([shape.representative_point().coords[0]])]
+        spots = [
+            shapely.points(grid_x[inside], grid_y[inside]),
+            shapely.points([shape.representative_point().coords[0]]),
+        ]
         for condition in row.conditions:
             if condition.negated or condition.relation is Relation.ON:
                 continue
             for name in condition.classes:
                 others, anchors = self._of_class(name)
-                if not len(others):
-                    continue
                 near = self._index_of(name).query(shape, predicate="intersects")
                 # Where an anchor's middle is outside, its crown still covers the rim; the grid finds that or not.
                 middles = shapely.centroid(anchors[near[others[near] != object_id]])
@@ -129,10 +130,7 @@ class Grader:
         stands = np.zeros(len(ids), dtype=np.bool_)
         middles = shapely.centroid(shapes)
         for name in condition.classes:
-            others, anchors = self._of_class(name)
-            if not len(others):
-                continue
-            index = self._index_of(name)
+            others, index = self._of_class(name)[0], self._index_of(name)
             if condition.relation is Relation.UNDER:
                 pairs = index.query(middles, predicate="intersects")
             else:

@@ -105,32 +105,48 @@ _SOFT = (_G.GRASS, _G.WOOD, _G.GARDEN)
 _PAVED = (_G.ROAD, _G.PAVEMENT, _G.PLAZA, _G.CYCLEWAY, _G.STEPS, _G.PARKING)
 # Ground nouns: the words, the ground that is meant when it is shunned or when something stands on it, and the ground
 # that "stay on …" takes in. Who is told to stay on the road may use its cycle lanes and its parking places; who is told
-# to stay on the pavement may cross squares and stairs; who is told to follow the paths may use all that is made for
-# walking. A marked crossing is pavement on the map; on the road it is narrow enough to be tolerated.
+# to stay on the pavement may use squares, stairs and footpaths (maps draw many a pavement as a footway); who is told to
+# follow the paths may use all that is made for walking, and cycleways. A marked crossing is walking ground on the map;
+# on the road it is narrow enough to be tolerated.
 _GROUND_WORDS: tuple[tuple[str, tuple[Ground, ...], tuple[Ground, ...]], ...] = (
-    ("road, street, roadway, carriageway, lane, driveway, traffic lane", (_G.ROAD,),
-     (_G.ROAD, _G.CYCLEWAY, _G.PARKING)),
-    ("pavement, sidewalk, footway, walkway, side walk", (_G.PAVEMENT,), (_G.PAVEMENT, _G.PLAZA, _G.STEPS)),
+    (
+        "road, street, roadway, carriageway, lane, driveway, traffic lane",
+        (_G.ROAD,),
+        (_G.ROAD, _G.CYCLEWAY, _G.PARKING),
+    ),
+    ("pavement, sidewalk, footway, walkway, side walk", (_G.PAVEMENT,), (_G.PAVEMENT, _G.PATH, _G.PLAZA, _G.STEPS)),
     ("plaza, square, piazza, pedestrian zone, pedestrian area, town square", (_G.PLAZA,), (_G.PLAZA,)),
-    ("cycleway, bike lane, bike path, cycle lane, cycle path, cycle track, bicycle lane, bicycle path", (_G.CYCLEWAY,),
-     (_G.CYCLEWAY,)),
-    ("path, footpath, foot path, trail, walking path, gravel path, park path, track", (_G.PATH,),
-     (_G.PATH, _G.PAVEMENT, _G.PLAZA, _G.STEPS, _G.CYCLEWAY)),
+    (
+        "cycleway, bike lane, bike path, cycle lane, cycle path, cycle track, bicycle lane, bicycle path",
+        (_G.CYCLEWAY,),
+        (_G.CYCLEWAY,),
+    ),
+    (
+        "path, footpath, foot path, trail, walking path, gravel path, park path, track",
+        (_G.PATH,),
+        (_G.PATH, _G.PAVEMENT, _G.PLAZA, _G.STEPS, _G.CYCLEWAY),
+    ),
     ("step, stair, staircase, stairway, flight of stairs, flight of steps", (_G.STEPS,), (_G.STEPS,)),
     ("grass, turf, grassland", (_G.GRASS,), (_G.GRASS,)),
     ("wood, woods, woodland, forest, grove", (_G.WOOD,), (_G.WOOD,)),
     ("flower bed, flowerbed, flower border, flower", (_G.GARDEN,), (_G.GARDEN,)),
     ("sand, beach", (_G.SAND,), (_G.SAND,)),
-    ("water, pond, lake, river, stream, canal, waterfront, waterside, shore, harbour, harbor, sea", (_G.WATER,),
-     (_G.WATER,)),
+    (
+        "water, pond, lake, river, stream, canal, waterfront, waterside, shore, harbour, harbor, sea",
+        (_G.WATER,),
+        (_G.WATER,),
+    ),
     ("car park, parking lot, parking area, parking space, parking place", (_G.PARKING,), (_G.PARKING,)),
     ("railway, railway track, railway line, rail, train track, tram track, railroad", (_G.RAILWAY,), (_G.RAILWAY,)),
     ("building site, construction site, construction area", (_G.CONSTRUCTION,), (_G.CONSTRUCTION,)),
     ("yard, courtyard, back yard, backyard", (_G.YARD,), (_G.YARD,)),
     ("paved ground, paved surface, paved way, hard ground, hard surface, paved area", _PAVED, _PAVED),
     ("greenery, green area, vegetation, plants", _SOFT, _SOFT),
-    ("walking area, footpaths and squares", (_G.PAVEMENT, _G.PATH, _G.PLAZA, _G.STEPS),
-     (_G.PAVEMENT, _G.PATH, _G.PLAZA, _G.STEPS)),
+    (
+        "walking area, footpaths and squares",
+        (_G.PAVEMENT, _G.PATH, _G.PLAZA, _G.STEPS),
+        (_G.PAVEMENT, _G.PATH, _G.PLAZA, _G.STEPS),
+    ),
 )
 
 # Nouns that are an object or a ground, by their place in the sentence.
@@ -138,9 +154,14 @@ _BOTH: tuple[tuple[str, Noun], ...] = (
     ("lawn", Noun(("lawn",), (_G.GRASS,), (_G.GRASS,))),
     ("garden", Noun(("lawn",), (_G.GARDEN,), (_G.GARDEN,))),
     ("park", Noun(("lawn",), _SOFT, (*_SOFT, _G.PATH))),
-    ("playground, kids playground, children's playground, play area, play park", Noun(("playground",), (_G.PLAYGROUND,), (_G.PLAYGROUND,))),
-    ("pitch, sports pitch, sports field, sports ground, playing field, sports court, athletic field",
-     Noun(("pitch",), (_G.PITCH,), (_G.PITCH,))),
+    (
+        "playground, kids playground, children's playground, play area, play park",
+        Noun(("playground",), (_G.PLAYGROUND,), (_G.PLAYGROUND,)),
+    ),
+    (
+        "pitch, sports pitch, sports field, sports ground, playing field, sports court, athletic field",
+        Noun(("pitch",), (_G.PITCH,), (_G.PITCH,)),
+    ),
     ("building", Noun(buildings=True)),
     ("house", Noun(buildings=True)),
     ("wall", Noun(buildings=True)),
@@ -161,14 +182,31 @@ _IRREGULAR = {"person": ("people",), "man": ("men",), "woman": ("women",), "gras
 
 # Relations: words, relation, negated, metres.
 _RELATION_WORDS: tuple[tuple[str, Relation, bool, float], ...] = (
-    ("near, near to, close to, by, beside, next to, alongside, adjacent to, right by, right next to, in front of, "
-     "at, outside, outside of, around, along, close by, not far from, with, that has, that is near, in the vicinity of, "
-     "at the edge of, on the edge of, on the bank of, on the shore of, at the foot of", Relation.NEAR, False, NEAR_M),
+    (
+        (
+            "near, near to, close to, by, beside, next to, alongside, adjacent to, right by, right next to, "
+            "in front of, "
+            "at, outside, outside of, around, along, close by, not far from, with, that has, that is near, "
+            "in the vicinity of, "
+            "at the edge of, on the edge of, on the bank of, on the shore of, at the foot of"
+        ),
+        Relation.NEAR,
+        False,
+        NEAR_M,
+    ),
     ("not near, not next to, not close to, not beside, without, with no, not by, not at", Relation.NEAR, True, NEAR_M),
-    ("away from, far from, far away from, well away from, not within sight of, at a distance from", Relation.NEAR, True,
-     AWAY_M),
-    ("under, beneath, underneath, below, in the shade of, in the shadow of, shaded by, covered by, sheltered by",
-     Relation.UNDER, False, NEAR_M),
+    (
+        "away from, far from, far away from, well away from, not within sight of, at a distance from",
+        Relation.NEAR,
+        True,
+        AWAY_M,
+    ),
+    (
+        "under, beneath, underneath, below, in the shade of, in the shadow of, shaded by, covered by, sheltered by",
+        Relation.UNDER,
+        False,
+        NEAR_M,
+    ),
     ("not under, not beneath, not covered by, not in the shade of", Relation.UNDER, True, NEAR_M),
     ("on, in, inside, within, upon, standing on, standing in, in the middle of", Relation.ON, False, NEAR_M),
     ("not on, not in, off, outside the", Relation.ON, True, NEAR_M),
@@ -190,8 +228,10 @@ _QUALITIES: tuple[tuple[str, Condition], ...] = (
 )
 
 _ATTRIBUTES: tuple[tuple[str, AttributeTest], ...] = (
-    ("with a backrest, with backrest, with a back, with a back rest, with backrests",
-     AttributeTest("backrest", ("yes",))),
+    (
+        "with a backrest, with backrest, with a back, with a back rest, with backrests",
+        AttributeTest("backrest", ("yes",)),
+    ),
     ("without a backrest, without backrest, with no backrest, backless", AttributeTest("backrest", ("no",))),
 )
 
@@ -203,6 +243,10 @@ def split_words(text: str) -> tuple[str, ...]:
 
 def _phrases(listed: str) -> list[tuple[str, ...]]:
     return [split_words(item) for item in listed.split(",")]
+
+
+def _words(listed: str) -> frozenset[str]:
+    return frozenset(listed.split())
 
 
 def _plurals(words: tuple[str, ...]) -> list[tuple[str, ...]]:
@@ -273,78 +317,110 @@ def _joined(*slots: str) -> list[tuple[str, ...]]:
     return phrases
 
 
-_MOTIONS = "walk, walking, go, going, step, stepping, drive, driving, fly, flying, travel, travelling, traveling, move, " \
-    "moving, tread, treading, run, running, pass, passing, get, getting, stay, staying"
+_MOTIONS = (
+    "walk, walking, go, going, step, stepping, drive, driving, fly, flying, travel, travelling, traveling, "
+    "move, moving, "
+    "tread, treading, run, running, pass, passing, get, getting, stay, staying"
+)
 _NEGATIONS = "do not, don't, never, not, without, must not, may not, should not"
+_KEEPING = "stay, staying, keep, keeping, remain, remaining, stick, sticking"
+_ADVERBS = "-, only, strictly, always, just, entirely"
+_ACROSS = (
+    "-, walking on, stepping on, going on, walking over, crossing, going over, entering, going through, going across, "
+    "walking across, going into, walking through, using, taking, touching, all"
+)
+
+# Phrases that open a path clause, slot by slot: wanted rather than shunned, whether they are one whatever follows.
+_PATH_PHRASES: tuple[tuple[bool, bool, tuple[str, ...]], ...] = (
+    (True, True, (_KEEPING, _ADVERBS, "on, to, along, within, in, inside")),
+    (
+        True,
+        True,
+        (
+            "walk, walking, drive, driving, fly, flying, travel, travelling, traveling, move, moving, run, running",
+            _ADVERBS,
+            "on, along, within, over",
+        ),
+    ),
+    (
+        True,
+        True,
+        (
+            _NEGATIONS,
+            (
+                "leave, leaving, step off, stepping off, stray from, straying from, go off, going off, "
+                "walk off, walking off, wander off, wandering off, depart from, departing from"
+            ),
+        ),
+    ),
+    (True, False, ("follow, following, use, using, take, taking", "-, only")),
+    (True, False, ("go, going, only", "along, via, by way of, on")),
+    (True, False, ("via, by way of",)),
+    (False, True, ("avoid, avoiding, shun, shunning", _ACROSS)),
+    (False, True, (_NEGATIONS, _MOTIONS, "on, onto, over, into, across, through, in, near, along")),
+    (False, True, (_NEGATIONS, "cross, crossing, enter, entering, touch, touching")),
+    (False, False, (_NEGATIONS, "use, using, take, taking")),
+    (False, True, (_KEEPING, "off, off of, away from, well away from, clear of, out of")),
+    (False, False, ("rather than, instead of, and not, but not, not, never, no", "-, on, over, across, through")),
+)
 
 
 @cache
 def path_markers() -> dict[tuple[str, ...], tuple[bool, bool]]:
     """Return phrases that open a path clause: (wanted rather than shunned, whether it is one whatever follows).
 
-    A phrase that is not one whatever follows ("take …", "along …") is one only if ground follows.
+    A phrase that is not one whatever follows ("take …") is one only if ground follows.
     """
-    table: dict[tuple[str, ...], tuple[bool, bool]] = {}
-    keeping = "stay, staying, keep, keeping, remain, remaining, stick, sticking"
-    adverbs = "-, only, strictly, always, just, entirely"
-    for phrase in _joined(keeping, adverbs, "on, to, along, within, in, inside"):
-        table[phrase] = (True, True)
-    for phrase in _joined("walk, walking, drive, driving, fly, flying, travel, travelling, traveling, move, moving, "
-                          "run, running, moving only, walking only", adverbs, "on, along, within, over"):
-        table[phrase] = (True, True)
-    for phrase in _joined(_NEGATIONS, "leave, leaving, step off, stepping off, stray from, straying from, go off, "
-                          "going off, walk off, walking off, wander off, wandering off, depart from, departing from"):
-        table[phrase] = (True, True)
-    for phrase in _joined("follow, following, use, using, take, taking", "-, only"):
-        table[phrase] = (True, False)
-    for phrase in _joined("go, going, only, -", "along, via, by way of, on"):
-        if phrase not in {("along",), ("on",)}:
-            table[phrase] = (True, False)
-    for phrase in _joined("avoid, avoiding, shun, shunning", "-, walking on, stepping on, going on, walking over, "
-                          "crossing, going over, entering, going through, going across, walking across, going into, "
-                          "walking through, using, taking, touching, all"):
-        table[phrase] = (False, True)
-    for phrase in _joined(_NEGATIONS, _MOTIONS, "on, onto, over, into, across, through, in, near, along"):
-        table[phrase] = (False, True)
-    for phrase in _joined(_NEGATIONS, "cross, crossing, enter, entering, touch, touching"):
-        table[phrase] = (False, True)
-    for phrase in _joined(_NEGATIONS, "use, using, take, taking"):
-        table[phrase] = (False, False)
-    for phrase in _joined(keeping, "off, off of, away from, well away from, clear of, out of"):
-        table[phrase] = (False, True)
-    for phrase in _joined("rather than, instead of, and not, but not, not, never, no", "-, on, over, across, through"):
-        table[phrase] = (False, False)
-    return table
+    return {
+        phrase: (is_wanted, whatever_follows)
+        for is_wanted, whatever_follows, slots in _PATH_PHRASES
+        for phrase in _joined(*slots)
+    }
 
 
-LEADS = tuple(split_words(item) for item in (
-    "find,find me,find us,help me find,look for,search for,seek,locate,take me to,bring me to,lead me to,guide me to,go to,"
-    "go and find,navigate to,get to,get me to,walk to,drive to,fly to,head to,head for,show me,show me to,where is,"
-    "where are,where can i find,where could i find,where's,i need,i want,i would like,i'd like,i am looking for,"
-    "i'm looking for,we need,can you find,could you find,reach,to find,to reach,discover,get,spot me,point me to,"
-    "i want to find,i need to find,until you find,until you reach,and find,give me,is there,are there,i have to find"
-).split(","))
-DETERMINERS = frozenset({"a", "an", "the", "some", "any", "one", "my", "your", "this", "that", "these", "those", "all",
-                         "its", "nearest", "closest", "another", "our", "every", "each", "of"})
-PLACEHOLDERS = frozenset({"somewhere", "something", "anywhere", "anything", "place", "spot", "location", "area", "where",
-                          "things", "thing", "corner"})
+LEADS = tuple(
+    _phrases(
+        "find, find me, find us, help me find, look for, search for, seek, locate, take me to, bring me to, "
+        "lead me to, "
+        "guide me to, go to, go and find, navigate to, get to, get me to, walk to, drive to, fly to, head to, "
+        "head for, "
+        "show me, show me to, where is, where are, where can i find, where could i find, where's, i need, i want, "
+        "i would like, i'd like, i am looking for, i'm looking for, we need, can you find, could you find, "
+        "reach, to find, "
+        "to reach, discover, get, spot me, point me to, i want to find, i need to find, until you find, "
+        "until you reach, "
+        "and find, give me, is there, are there, i have to find"
+    )
+)
+DETERMINERS = _words(
+    "a an the some any one my your this that these those all its nearest closest another our every each of"
+)
+PLACEHOLDERS = _words("somewhere something anywhere anything place spot location area where things thing corner")
 #: Words that carry nothing to be graded.
-SMALL_WORDS = DETERMINERS | PLACEHOLDERS | frozenset(
-    "me us i we you it he she they am is are be been to for please can could would should will let lets there here and "
-    "or but then while as so which who whose when how with at by from into onto do does did has have had having need "
-    "want like hello hi hey thanks thank robot now also too just only really very bit little nice good great "
-    "way your yours our their them on in near nearby up out about if possible possibly must may not no "
-    "someone's one's again right directly straight want wants i'm i'd i've we're it's that's what what's "
-    "next close around vicinity along standing located situated placed kind sort type".split()
+SMALL_WORDS = (
+    DETERMINERS
+    | PLACEHOLDERS
+    | _words(
+        "me us i we it you he she they am is are be been to for please can could would should will let lets there here "
+        "and or but then while as so which who whose when how with at by from into onto do does did has have had having "
+        "need want wants like hello hi hey thanks thank robot now also too just only really very bit little nice good "
+        "great way our their them on in near nearby up out about if possible possibly must may not no someone's one's "
+        "again right directly straight i'm i'd i've we're it's that's what what's tells next close around vicinity along "
+        "standing located situated placed parked kind sort type"
+    )
 )
 #: Words after a relation that change it in ways that the judge does not know.
-STRANGE_WORDS = frozenset("behind across opposite between beyond past side left north south east west above over "
-                          "through view after before towards toward".split())
+STRANGE_WORDS = _words(
+    "behind across opposite between beyond past side left north south east west above over through view after before "
+    "towards toward"
+)
 #: Phrases that only close a relation that was said already ("with a tree next to it").
-CLOSERS = tuple(split_words(item) for item in (
-    "next to it,near it,beside it,close to it,by it,around it,nearby,close by,in the vicinity,on it,next to them,near by,"
-    "in it,right next to it,over it,above it,there"
-).split(","))
+CLOSERS = tuple(
+    _phrases(
+        "next to it, near it, beside it, close to it, by it, around it, nearby, close by, in the vicinity, on it, "
+        "next to them, near by, in it, right next to it, over it, above it, there"
+    )
+)
 
 
 @cache

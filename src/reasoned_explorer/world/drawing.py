@@ -148,12 +148,12 @@ def legend_entries(world: World, shown: Bounds) -> list[LegendEntry]:
 
 
 def unknown_share(world: World) -> float | None:
-    """Return the share of the world's area whose ground nobody has told us, 0 to 1; None for an empty world."""
-    if not (world.bounds.width_m > 0.0 and world.bounds.height_m > 0.0):
+    """Return the share of what is not built on whose ground is unknown, 0 to 1; None where a world is nil or vast."""
+    if not (world.bounds.width_m >= 1.0 and world.bounds.height_m >= 1.0 and world.bounds.area_km2 <= 100.0):
         return None
-    from reasoned_explorer.world.atlas import Atlas
+    from reasoned_explorer.world.raster import GroundRaster  # here, since a machine-code compiler comes with it
 
-    return float(Atlas(world).ground.unknown_share)
+    return float(GroundRaster.of(world, cell_m=1.0).unknown_share)
 
 
 def _summary(world: World) -> str:
@@ -179,7 +179,7 @@ def _caption(world: World) -> str:
         parts.append(f"about {abs(world.origin.lat_deg):.4f}° {north}, {abs(world.origin.lon_deg):.4f}° {east}")
     share = unknown_share(world)
     if share is not None:
-        parts.append(f"ground unknown on {share:.0%} of the area")
+        parts.append(f"ground unknown on {share:.0%} of what is not built on")
     parts.append("crowns inside woods are a pattern, not single trees")
     return ". ".join(part[0].upper() + part[1:] for part in parts if part) + "."
 

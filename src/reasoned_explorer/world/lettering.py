@@ -88,8 +88,8 @@ class Room:
         return rows, columns
 
 
-#: A street's name is written again after this many points.
-_REPEAT_PT = 330.0
+#: A street's name is written again after so many points, and its copies are never closer than so many.
+_REPEAT_PT, _APART_PT = 330.0, 190.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +111,7 @@ class _Course:
 def badge_radius_pt(board: Board, rank: int) -> float:
     """Return how large the symbols of a rank are on a map, points: larger the closer one looks."""
     closeness = min(max(math.sqrt(0.55 / board.metres_per_point), 0.62), 1.7)
-    return (0.0, 2.9, 4.6, 5.8)[rank] * closeness
+    return (0.0, 3.3, 5.1, 6.3)[rank] * closeness
 
 
 def place_badges(
@@ -141,7 +141,9 @@ def place_badges(
     order = sorted(by_class, key=lambda name: (-symbol_of(name).rank, len(by_class[name]), name))
     for name in order:
         symbol = symbol_of(name)
-        radius_pt = badge_radius_pt(board, symbol.rank) * share
+        # What stands everywhere need not shout everywhere.
+        modest = min(max((60.0 / len(by_class[name])) ** 0.2, 0.72), 1.0)
+        radius_pt = badge_radius_pt(board, symbol.rank) * share * modest
         shown: list[tuple[float, float]] = []
         crowded: list[tuple[float, float]] = []
         for item in by_class[name]:
@@ -173,8 +175,10 @@ def letter_streets(board: Board, ways: Sequence[Way], room: Room, *, colour: str
     halos: list[MarkPath] = []
     for width_m, _, name, lines in streets:
         size_pt = 7.6 if width_m >= 7.5 else 6.6 if width_m >= 4.0 else 5.6
-        for line in lines[:4]:
-            halos.extend(_along(board, line, room, _Line(name, size_pt)))
+        spines: list[FloatArray] = []
+        for line in lines[:6]:
+            spines += _along(board, line, room, _Line(name, size_pt), spines)
+        halos += [_bent(spine, _Line(name, size_pt), board.metres_per_point) for spine in spines]
         if len(halos) >= limit:
             break
     background = mix(board.palette.ground[Ground.ROAD], "#ffffff", 0.75)
@@ -189,15 +193,17 @@ def _length(line: FloatArray) -> float:
     return float(np.hypot(*np.diff(line, axis=0).T).sum())
 
 
-def _along(board: Board, line: FloatArray, room: Room, letters: _Line) -> list[MarkPath]:
-    """Return a name's letters, once or oftener, where there is room along a line."""
+def _along(
+    board: Board, line: FloatArray, room: Room, letters: _Line, others: Sequence[FloatArray]
+) -> list[FloatArray]:
+    """Return the stretches of a line where there is room for a name, away from the others that bear it already."""
     long_m = width_pt(letters.text, "sans", letters.size_pt) * board.metres_per_point
     if long_m <= 0.0 or _length(line) < long_m * 1.08:
         return []
     course = _course(line, board.metres_per_point * 2.0)
     length_m = float(course.at_m[-1])
     copies = max(1, int(length_m / (_REPEAT_PT * board.metres_per_point)))
-    placed: list[MarkPath] = []
+    placed: list[FloatArray] = []
     for copy in range(copies):
         low, high = length_m * copy / copies, length_m * (copy + 1) / copies
         best = 0.5 * (low + high - long_m)
@@ -205,10 +211,17 @@ def _along(board: Board, line: FloatArray, room: Room, letters: _Line) -> list[M
         starts = np.arange(low, max(high - long_m, low + 1e-6), step)
         for start in starts[np.argsort(np.abs(starts - best), kind="stable")].tolist():
             spine = _spine(course, start, long_m, board.metres_per_point)
-            if spine is not None and room.take(spine, letters.size_pt * 0.62):
-                placed.append(_bent(spine, letters, board.metres_per_point))
+            if spine is None or _closest_m(spine, [*others, *placed]) < _APART_PT * board.metres_per_point:
+                continue
+            if room.take(spine, letters.size_pt * 0.62):
+                placed.append(spine)
                 break
     return placed
+
+
+def _closest_m(spine: FloatArray, others: Sequence[FloatArray]) -> float:
+    middle = spine[len(spine) // 2]
+    return min((float(np.hypot(*(middle - other[len(other) // 2]))) for other in others), default=math.inf)
 
 
 def _course(line: FloatArray, step_m: float) -> _Course:

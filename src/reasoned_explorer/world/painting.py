@@ -30,6 +30,7 @@ SHADOW_PER_METRE = 0.45
 #: Taller buildings throw no longer shadow than this, so that a tower does not hide a quarter.
 LONGEST_SHADOW_M = 22.0
 
+_QUAD_CODES = (MarkPath.MOVETO, MarkPath.LINETO, MarkPath.LINETO, MarkPath.LINETO, MarkPath.CLOSEPOLY)
 _EDGED = frozenset(
     {
         Ground.GRASS,
@@ -313,33 +314,35 @@ def _paint_shadows(board: Board, buildings: Sequence[Building]) -> None:
     Three lengths on top of each other make the shadow's end soft.
     """
     casting = [building for building in buildings if building.height_m > 0.5]
-    for share, alpha in ((1.0, 0.06), (0.86, 0.07), (0.7, 0.08)):
-        rings: list[FloatArray] = []
-        for building in casting:
-            rings.extend(_shadow_rings(building, share))
+    rings = [oriented(building.outer, anticlockwise=True) for building in casting]
+    direction = np.array(SHADOW_DIRECTION)
+    for share, alpha in ((1.0, 0.06), (0.86, 0.07), (0.7, 0.08)) if casting else ():
+        outlines: list[FloatArray] = []
+        walls: list[FloatArray] = []
+        for building, ring in zip(casting, rings, strict=True):
+            reach = min(building.height_m * SHADOW_PER_METRE, LONGEST_SHADOW_M) * share
+            low = ring + direction * min(building.min_height_m * SHADOW_PER_METRE, reach)
+            high = ring + direction * reach
+            outlines += [low, high]
+            walls.append(np.stack([low, _after(low), _after(high), high], axis=1))
+        quads = np.concatenate(walls)
+        # With one sense of turning for all, filling by winding number gives their union.
+        along, across = quads[:, 1] - quads[:, 0], quads[:, 3] - quads[:, 0]
+        clockwise = along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0] < 0.0
+        quads[clockwise] = quads[clockwise][:, ::-1]
+        closed = np.concatenate([quads, quads[:, :1]], axis=1).reshape(-1, 2)
+        codes = np.tile(np.array(_QUAD_CODES, dtype=np.uint8), len(quads))
+        roofs = compound_path(outlines)
+        path = MarkPath(np.concatenate([roofs.vertices, closed]), np.concatenate([np.asarray(roofs.codes), codes]))
         board.axes.add_collection(
-            PathCollection(
-                [compound_path(rings)] if rings else [],
-                facecolors=board.palette.shadow,
-                edgecolors="none",
-                alpha=alpha,
-                zorder=3.0,
-            ),
+            PathCollection([path], facecolors=board.palette.shadow, edgecolors="none", alpha=alpha, zorder=3.0),
             autolim=False,
         )
 
 
-def _shadow_rings(building: Building, share: float) -> list[FloatArray]:
-    reach = min(building.height_m * SHADOW_PER_METRE, LONGEST_SHADOW_M) * share
-    start = min(building.min_height_m * SHADOW_PER_METRE, reach)
-    shift = np.array(SHADOW_DIRECTION) * reach
-    ring = oriented(building.outer, anticlockwise=True) + np.array(SHADOW_DIRECTION) * start
-    roof = ring - np.array(SHADOW_DIRECTION) * start + shift
-    rings = [ring, roof]
-    following, roof_following = np.roll(ring, -1, axis=0), np.roll(roof, -1, axis=0)
-    quads = np.stack([ring, following, roof_following, roof], axis=1)
-    rings.extend(oriented(quad, anticlockwise=True) for quad in quads)
-    return rings
+def _after(ring: FloatArray) -> FloatArray:
+    """Return each point's successor in a ring."""
+    return np.concatenate([ring[1:], ring[:1]])
 
 
 def _paint_buildings(board: Board, buildings: Sequence[Building]) -> None:
@@ -369,7 +372,7 @@ def _paint_eaves(board: Board, buildings: Sequence[Building]) -> None:
     for building in buildings:
         ring = oriented(building.outer, anticlockwise=True)
         starts.append(ring)
-        ends.append(np.roll(ring, -1, axis=0))
+        ends.append(_after(ring))
     if not starts:
         return
     first, second = np.concatenate(starts), np.concatenate(ends)

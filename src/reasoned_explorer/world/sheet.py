@@ -43,7 +43,14 @@ def plain_settings() -> Iterator[None]:
     """Draw with matplotlib's own defaults whatever a person's settings file says, and put everything back after."""
     with mpl.rc_context():
         mpl.rcdefaults()
-        mpl.rcParams.update({"text.parse_math": False, "svg.hashsalt": "reasoned-explorer", "path.simplify": False})
+        mpl.rcParams.update(
+            {
+                "text.parse_math": False,
+                "text.hinting": "none",  # letters are as wide at every size
+                "svg.hashsalt": "reasoned-explorer",
+                "path.simplify": False,
+            }
+        )
         yield
 
 
@@ -193,8 +200,13 @@ def draw_badges(
         )
 
 
-def draw_scale_bar(sheet: Sheet, x_pt: float, y_pt: float, metres_per_point: float, *, room_pt: float = 150.0) -> float:
-    """Draw a scale bar of a round length with four fields and return its width in points."""
+def scale_bar_width_pt(metres_per_point: float, *, room_pt: float = 150.0) -> float:
+    """Return how wide a scale bar of a round length is that fits into ``room_pt`` points."""
+    return _round_length_m(room_pt * metres_per_point) / metres_per_point
+
+
+def draw_scale_bar(sheet: Sheet, x_pt: float, y_pt: float, metres_per_point: float, *, room_pt: float = 150.0) -> None:
+    """Draw a scale bar of a round length with four fields; its lower left corner is at a point of the sheet."""
     length_m = _round_length_m(room_pt * metres_per_point)
     step = length_m / metres_per_point / 4.0
     palette = sheet.palette
@@ -211,7 +223,6 @@ def draw_scale_bar(sheet: Sheet, x_pt: float, y_pt: float, metres_per_point: flo
         )
     for share, text in ((0.0, "0"), (2.0, _length_text(length_m / 2)), (4.0, _length_text(length_m, unit=True))):
         sheet.write(x_pt + share * step, y_pt + 7.0, text, size_pt=7.5, colour=palette.soft_ink, align="center")
-    return 4.0 * step
 
 
 def _round_length_m(longest_m: float) -> float:

@@ -392,5 +392,5 @@ def path_of(shape: _Shape) -> MarkPath:
 def oriented(ring: NDArray[np.float64], *, anticlockwise: bool) -> NDArray[np.float64]:
     """Return the ring in the asked sense of turning; shape (n, 2)."""
     x, y = ring[:, 0] - ring[0, 0], ring[:, 1] - ring[0, 1]
-    twice_area = float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+    twice_area = float(x[:-1] @ y[1:] - y[:-1] @ x[1:])
     return ring if (twice_area >= 0.0) == anticlockwise else ring[::-1]

@@ -10,6 +10,10 @@ from reasoned_explorer.minds.embedded.lexicon import data_lines
 SERVES = 0.8
 
 
+#: What only says how a place should be, where something else is wanted there: "to sit in the shade".
+QUALITIES = frozenset({"shade", "sun", "shelter", "quiet", "view", "light", "water_fun", "flowers_smell", "people", "sit"})
+
+
 @dataclass(frozen=True, slots=True)
 class Affordance:
     """Something that one can do somewhere.
@@ -49,10 +53,15 @@ def _cue_pattern() -> tuple[re.Pattern[str], dict[str, tuple[str, ...]]]:
 
 
 def affordances_in(text: str) -> tuple[str, ...]:
-    """Return the names of the affordances that a (lower-case) text asks for: those of the longest cues first.
+    """Return the names of the affordances that a (lower-case) text asks for: the main one, then qualities of the place.
 
     A shorter cue inside of a longer one does not count: "play soccer" is not "play".
     """
     pattern, owners = _cue_pattern()
     cues = sorted({match.group() for match in pattern.finditer(text)}, key=lambda cue: (-len(cue.split()), text.find(cue)))
-    return tuple(dict.fromkeys(name for cue in cues for name in owners[cue]))
+    names = list(dict.fromkeys(name for cue in cues for name in owners[cue]))
+    # "Sit" is wanted for itself and, in "sit in the shade", the main thing; any other wish comes before it.
+    main = next((name for name in names if name not in QUALITIES), "sit" if "sit" in names else "")
+    if not main:
+        return tuple(names)
+    return (main, *(name for name in names if name in QUALITIES and name not in {main, "sit"}))

@@ -48,6 +48,9 @@ class Command:
     phase: Phase
 
 
+_HEADING_GAINS = PidGains(2.5, integral=0.3, derivative=0.1, integral_limit=0.1)
+
+
 @dataclass(frozen=True, slots=True)
 class FollowerSettings:
     """How a leg is followed. All values are positive and finite.
@@ -87,11 +90,13 @@ class FollowerSettings:
     stuck_s: float = 4.0
     stuck_m: float = 0.1
     stuck_rad: float = math.radians(3.0)
-    heading_gains: PidGains = PidGains(2.5, integral=0.3, derivative=0.1, integral_limit=0.1)
+    heading_gains: PidGains = _HEADING_GAINS
 
     def __post_init__(self) -> None:
         numbers = {
-            item.name: getattr(self, item.name) for item in fields(self) if item.name not in {"sideways", "heading_gains"}
+            item.name: getattr(self, item.name)
+            for item in fields(self)
+            if item.name not in {"sideways", "heading_gains"}
         }
         faults = [
             Fault(f"{name} = {value}", "a finite number > 0")
@@ -170,7 +175,7 @@ class PidFollower:
 
     @property
     def cross_track_m(self) -> float:
-        """Distance of the last estimated position from the straight line, positive to its left, metres."""
+        """Distance of the last estimated position from the straight line, positive to its right, metres."""
         return float(self._memory[kernels.MEM_CROSS])
 
     def start(self, pose: Pose, target: Pose, *, face: bool = True) -> None:
@@ -192,9 +197,7 @@ class PidFollower:
         if faults:
             raise SettingsError("leg", faults)
         heading = target.heading_rad if face else math.nan
-        kernels.follower_start(
-            self._memory, pose.x_m, pose.y_m, target.x_m, target.y_m, heading, kernels.PHASE_DRIVE
-        )
+        kernels.follower_start(self._memory, pose.x_m, pose.y_m, target.x_m, target.y_m, heading, kernels.PHASE_DRIVE)
 
     def step(self, pose: Pose, *, yaw_rate_radps: float, dt_s: float) -> Command:
         """Return the next command.

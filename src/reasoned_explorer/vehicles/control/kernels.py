@@ -274,7 +274,7 @@ def follower_step(
             _enter(memory, PHASE_DRIVE)
         else:
             _watch(memory, abs(error), settings[FOLLOW_STUCK_RAD], settings[FOLLOW_STUCK_S], dt_s)
-    elif phase == PHASE_BRAKE or phase == PHASE_FACE:
+    elif phase in (PHASE_BRAKE, PHASE_FACE):
         final = memory[MEM_TARGET_HEADING]
         error = 0.0 if math.isnan(final) else wrap_bearing(final - heading_rad)
         _turn_command(settings, gains, memory, error, rate_radps, dt_s)
@@ -430,7 +430,8 @@ def _gate_pair(
         s_bb += 2.0 * cov[b, b_slow] + cov[b_slow, b_slow]
         s_ab += cov[a, b_slow] + cov[a_slow, b] + cov[a_slow, b_slow]
     determinant = s_aa * s_bb - s_ab * s_ab
-    return (res_a * res_a * s_bb - 2.0 * res_a * res_b * s_ab + res_b * res_b * s_aa) / determinant
+    squared: float = (res_a * res_a * s_bb - 2.0 * res_a * res_b * s_ab + res_b * res_b * s_aa) / determinant
+    return squared
 
 
 @njit(cache=True, error_model="numpy")

@@ -158,7 +158,9 @@ class PoseFilter:
             float(state[kernels.EKF_GYRO_BIAS]),
         )
 
-    def predict(self, dt_s: float, *, yaw_rate_radps: float, forward_mps2: float = 0.0, right_mps2: float = 0.0) -> None:
+    def predict(
+        self, dt_s: float, *, yaw_rate_radps: float, forward_mps2: float = 0.0, right_mps2: float = 0.0
+    ) -> None:
         """Carry the estimate on by an IMU sample.
 
         Args:

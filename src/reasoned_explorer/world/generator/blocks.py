@@ -215,7 +215,7 @@ def square_block(sketch: Sketch, rng: Generator, block: Polygon, zone: Zone) -> 
         bed = shapely.difference(bed, shapely.buffer(LineString([(x, y - 200), (x, y + 200)]), 3.0))
         if rng.random() < 0.6:
             sketch.lay(Ground.GRASS, bed, "lawn")
-        sketch.put(str(rng.choice(["fountain", "monument", "fountain"])), x, y, rng.uniform(0, 6.28))
+        sketch.put(str(rng.choice(["fountain", "monument", "artwork"])), x, y, rng.uniform(0, 6.28))
     if zone == "downtown" and radius > 9.0 and rng.random() < 0.6:
         sketch.put("kiosk", x + radius * 0.72, y, rng.uniform(0, 6.28))
 
@@ -229,7 +229,7 @@ def garden_block(sketch: Sketch, rng: Generator, block: Polygon) -> None:
         sketch.lay(Ground.PLAYGROUND, play, "playground")
     elif radius > 14.0:
         sketch.lay(Ground.PLAZA, shapely.points(x, y).buffer(min(7.0, radius * 0.35)), "rondel")
-        sketch.put("fountain", x, y)
+        sketch.put(str(rng.choice(["fountain", "artwork", "planter", "monument"])), x, y)
     box = np.asarray(shapely.minimum_rotated_rectangle(block).exterior.coords)[:4]
     middle = np.array([x, y])
     for corner in box:

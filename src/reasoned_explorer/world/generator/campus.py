@@ -221,7 +221,7 @@ def _paths(
         for corner in corners:
             sketch.pave(np.vstack([middle, corner]), 2.4, Ground.PATH)
         sketch.lay(Ground.PLAZA, shapely.points(middle).buffer(5.0), "rondel")
-        sketch.put(str(rng.choice(["artwork", "flagpole", "fountain", "monument"])), *middle.tolist())
+        sketch.put(str(rng.choice(["artwork", "flagpole", "fountain", "artwork"])), *middle.tolist())
         nodes.extend(ring[:4])
     for item in sketch.footprints[first:]:
         if item.entrance is not None:

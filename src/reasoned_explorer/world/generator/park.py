@@ -207,7 +207,7 @@ def _junction_squares(
     points, counts = np.unique(np.round(inside, 2), axis=0, return_counts=True)
     order = np.argsort(-counts, kind="stable")
     taken: list[Points] = []
-    centres = ["fountain", "monument", "artwork", "planter"]
+    centres = ["fountain", "artwork", "planter", "monument", "planter"]
     solid = (Ground.WATER, Ground.PITCH, Ground.PLAYGROUND)
     blocked = shapely.union_all(
         [patch.area for patch in sketch.patches[start[0] :] if patch.ground in solid]
@@ -215,7 +215,7 @@ def _junction_squares(
     )
     for index in order.tolist():
         point = points[index]
-        if len(taken) >= max(2, round(park.area / 22_000.0)):
+        if len(taken) >= max(2, round(park.area / 26_000.0)):
             break
         disc = shapely.points(point).buffer(float(rng.uniform(6.0, 9.0)))
         if any(np.hypot(*(point - other)) < 60.0 for other in taken) or disc.intersects(blocked):

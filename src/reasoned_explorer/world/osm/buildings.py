@@ -11,7 +11,15 @@ from numpy.typing import NDArray
 from reasoned_explorer.model.draws import uniform
 from reasoned_explorer.world.osm.features import Feature
 from reasoned_explorer.world.osm.shapes import clip, polygon_of, polygons_of, rings_of
-from reasoned_explorer.world.osm.tags import Tags, clean_text, is_below_ground, is_gone, is_set, parse_count, parse_length_m
+from reasoned_explorer.world.osm.tags import (
+    Tags,
+    clean_text,
+    is_below_ground,
+    is_gone,
+    is_set,
+    parse_count,
+    parse_length_m,
+)
 from reasoned_explorer.world.world import Bounds, Building
 
 _LEVEL_M = 3.0
@@ -69,10 +77,7 @@ def heights_of(tags: Tags, *, area_m2: float, seed: int, key: int) -> Heights:
     """
     kind = tags.get("building", "yes")
     is_roof = kind in _ROOFS or tags.get("building:part") == "roof"
-    bottom_m = parse_length_m(tags.get("min_height", tags.get("building:min_height")))
-    if bottom_m is None:
-        below = parse_count(tags.get("building:min_level", tags.get("min_level")))
-        bottom_m = 0.0 if below is None else below * _LEVEL_M
+    bottom_m = _underside_m(tags)
     top_m = parse_length_m(tags.get("height", tags.get("building:height")))
     source = "height"
     if top_m is None or not _MIN_HEIGHT_M <= top_m <= _MAX_HEIGHT_M:
@@ -89,6 +94,14 @@ def heights_of(tags: Tags, *, area_m2: float, seed: int, key: int) -> Heights:
     if is_roof and bottom_m == 0.0:
         bottom_m = max(top_m - _ROOF_THICKNESS_M, 0.0)
     return Heights(top_m, bottom_m if bottom_m < top_m else 0.0, source)
+
+
+def _underside_m(tags: Tags) -> float:
+    bottom_m = parse_length_m(tags.get("min_height", tags.get("building:min_height")))
+    if bottom_m is not None:
+        return bottom_m
+    below = parse_count(tags.get("building:min_level", tags.get("min_level")))
+    return 0.0 if below is None else min(below, 300.0) * _LEVEL_M
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -131,12 +144,13 @@ class BuildingSet:
 def buildings_of(areas: Sequence[Feature], doors: Sequence[Feature], bounds: Bounds, *, seed: int) -> BuildingSet:
     """Make the buildings of a map's areas and entrances.
 
-    Where an outline has parts (building:part), the parts carry its heights and the outline only what they leave over,
-    so that nothing stands there twice.
+    Where an outline has parts (building:part) that stand on the ground, the parts carry its heights and the outline
+    only what they leave over, so that nothing stands there twice; parts higher up are put on top of it.
     """
     outlines = [area for area in areas if is_building(area.tags) and not is_set(area.tags, "building:part")]
     parts = [area for area in areas if is_building(area.tags) and is_set(area.tags, "building:part")]
-    pieces = _without_parts(outlines, parts) + [(part, part.shape) for part in parts]
+    grounded = [part for part in parts if _underside_m(part.tags) <= WALK_UNDER_M]
+    pieces = _without_parts(outlines, grounded) + [(part, part.shape) for part in parts]
     built: list[Building] = []
     footprints: list[Any] = []
     if pieces:
@@ -225,5 +239,3 @@ def courtyards_of(buildings: Sequence[Building], *, min_area_m2: float = 4.0) ->
     """Return the courtyards of buildings as polygons, ENU metres."""
     holes = [polygon_of(hole) for one in buildings for hole in one.holes]
     return [hole for hole in holes if hole.area >= min_area_m2]
-
-

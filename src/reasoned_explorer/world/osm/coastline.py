@@ -23,10 +23,12 @@ class Sea:
         polygons: Shapely polygons; where there is no coastline there is no sea.
         unclear: How many stretches lay on both the land's and the water's side of broken coastline; they count as what
             most of their coast says.
+        loose_ends: How many ends of coastline lay inside the bounds and were led to their nearest edge.
     """
 
     polygons: tuple[Any, ...]
     unclear: int = 0
+    loose_ends: int = 0
 
 
 def sea_of(coast: Sequence[Any], bounds: Bounds) -> Sea:
@@ -42,7 +44,9 @@ def sea_of(coast: Sequence[Any], bounds: Bounds) -> Sea:
     """
     frame = box_of(bounds)
     wide = shapely.box(*shapely.buffer(frame, _MARGIN_M).bounds)
-    lines = [line for line in _joined_to_the_edge(coast, bounds) if line.intersects(wide)]
+    known = [line for whole in coast for line in lines_of(whole)]
+    leads = _leads_to_the_edge(known, bounds)
+    lines = [line for line in (*known, *leads) if line.intersects(wide)]
     if not lines:
         return Sea(())
     network = shapely.node(shapely.geometrycollections([*lines, wide.exterior]))
@@ -61,7 +65,8 @@ def sea_of(coast: Sequence[Any], bounds: Bounds) -> Sea:
     total = votes.sum(axis=0)
     certain = np.maximum(votes[0], votes[1]) >= _CERTAIN * np.maximum(total, 1e-9)
     polygons = [shapely.intersection(face, frame) for face in faces[is_sea]]
-    return Sea(tuple(polygon for polygon in polygons if not polygon.is_empty), int((~certain & (total > 0.0)).sum()))
+    return Sea(tuple(polygon for polygon in polygons if not polygon.is_empty),
+               int((~certain & (total > 0.0)).sum()), len(leads))  # fmt: skip
 
 
 def _probes(lines: Sequence[Any], area: Any) -> tuple[Any, Any, Any]:
@@ -84,27 +89,26 @@ def _probes(lines: Sequence[Any], area: Any) -> tuple[Any, Any, Any]:
     return shapely.points(middle + to_left), shapely.points(middle - to_left), length
 
 
-def _joined_to_the_edge(coast: Sequence[Any], bounds: Bounds) -> list[Any]:
-    """Return the coast with loose ends inside the bounds led straight on to beyond the nearest edge.
+def _leads_to_the_edge(pieces: Sequence[Any], bounds: Bounds) -> list[Any]:
+    """Return lines that lead the coast's loose ends inside the bounds straight on to beyond the nearest edge.
 
     Clipped files cut the coast a little inside of what they cover.
     """
-    pieces = [line for whole in coast for line in lines_of(whole)]
     ends: dict[tuple[float, float], int] = {}
     for line in pieces:
         points = shapely.get_coordinates(line)
         for point in (points[0], points[-1]):
             key = (round(float(point[0]), 2), round(float(point[1]), 2))
             ends[key] = ends.get(key, 0) + 1
-    joined = list(pieces)
+    leads = []
     for line in pieces:
         points = shapely.get_coordinates(line)
         for at_start, (x, y) in ((True, points[0]), (False, points[-1])):
             key = (round(float(x), 2), round(float(y), 2))
             if ends[key] == 1 and bounds.contains(float(x), float(y)):
                 beyond = _beyond_the_edge(float(x), float(y), bounds)
-                joined.append(shapely.LineString([beyond, (x, y)] if at_start else [(x, y), beyond]))
-    return joined
+                leads.append(shapely.LineString([beyond, (x, y)] if at_start else [(x, y), beyond]))
+    return leads
 
 
 def _beyond_the_edge(x_m: float, y_m: float, bounds: Bounds) -> tuple[float, float]:

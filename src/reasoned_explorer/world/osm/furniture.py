@@ -35,6 +35,9 @@ _AT_THE_WALL_M = 2.0
 _DOORSTEP_M = 0.5
 # A mapped door counts as a place's own where it is at most this much farther off than the nearest wall to a street.
 _DOOR_DETOUR_M = 20.0
+# What stands at most this far inside a wall on the map hangs on it; its middle goes this far before it.
+_INSIDE_THE_WALL_M = 1.0
+_WALL_GAP_M = 0.3
 _KERB_GAP_M = 0.6
 _MIN_SIZE_M, _MAX_SIZE_M = 0.05, 80.0
 _ON_THE_ROAD = frozenset({"traffic_signals", "traffic_sign", "bus_stop"})
@@ -74,7 +77,8 @@ def objects_of(
     seed: int,
 ) -> ObjectSet:
     """Make the objects of a map; their order is nodes, ways, multipolygons, each by id, then the trees of rows."""
-    counts = {"underground or indoor objects dropped": 0, "objects inside buildings dropped": 0}
+    counts = {"underground or indoor objects dropped": 0, "objects inside buildings dropped": 0,
+              "objects moved out of walls": 0}  # fmt: skip
     drafts: list[_Draft] = []
     for feature in (*points, *lines, *areas):
         draft = _draft(feature, seed, counts)
@@ -99,16 +103,14 @@ def _draft(feature: Feature, seed: int, counts: dict[str, int]) -> list[_Draft] 
     if tags.get("natural") == "tree_row" and feature.kind != NODE:
         return _row_of_trees(feature, seed)
     name = class_of(tags, is_node=feature.kind == NODE)
-    if name is None:
-        return None
+    if name is None or (name == "lawn" and feature.kind == NODE):
+        return None  # a park's name on a point says nothing about where its lawn is
     kind = OBJECT_CLASSES[name].kind
     if kind != "place" and (is_below_ground(tags) or is_set(tags, "indoor")):
         counts["underground or indoor objects dropped"] += 1
         return None
     size_m = _size_m(name, tags, seed, feature.osm_id)
     if feature.kind == NODE:
-        if name == "lawn":
-            return None  # a park's name on a point says nothing about where its lawn is
         x_m, y_m = feature.shape.x, feature.shape.y
         return [_Draft(feature, name, x_m, y_m, size_m, parse_direction_rad(tags.get("direction")))]
     if feature.shape.geom_type in {"LineString", "LinearRing"}:
@@ -237,17 +239,37 @@ def _settle(drafts: list[_Draft], buildings: BuildingSet, counts: dict[str, int]
     near = buildings.nearest(points, reach_m=_AT_THE_WALL_M)
     kept = []
     for draft, within, beside in zip(drafts, inside.tolist(), near.tolist(), strict=True):
+        itself = draft.feature.kind != NODE and is_building(draft.feature.tags)
+        if draft.class_name == "kiosk" and within >= 0 and not itself:
+            draft.class_name = "shop"  # a kiosk in a house is a small shop
+            draft.size_m = OBJECT_CLASSES["shop"].size_m
         kind = OBJECT_CLASSES[draft.class_name].kind
         if kind == "place":
             draft.building = within if within >= 0 else beside
-        elif within >= 0:
-            itself = draft.feature.kind != NODE and is_building(draft.feature.tags)
-            if not itself and kind != "area":
+        elif itself:
+            draft.building = within
+        elif within >= 0 and kind != "area":
+            if not _hang_on_the_wall(draft, buildings.footprints[within]):
                 counts["objects inside buildings dropped"] += 1
                 continue
-            draft.building = within if itself else -1
+            counts["objects moved out of walls"] += 1
         kept.append(draft)
     return kept
+
+
+def _hang_on_the_wall(draft: _Draft, footprint: Any) -> bool:
+    """Move what is drawn just inside a wall (a mailbox, a sign) to its outer side; return whether it was that close."""
+    here = shapely.Point(draft.x_m, draft.y_m)
+    if draft.outline is not None or here.distance(footprint.boundary) > _INSIDE_THE_WALL_M:
+        return False
+    wall = footprint.boundary.interpolate(footprint.boundary.project(here))
+    outward_rad = _outward_rad(wall, footprint)
+    if outward_rad is None:
+        return False
+    draft.x_m = wall.x + _WALL_GAP_M * math.sin(outward_rad)
+    draft.y_m = wall.y + _WALL_GAP_M * math.cos(outward_rad)
+    draft.heading_rad = outward_rad
+    return True
 
 
 def _go_to_the_doors(drafts: Sequence[_Draft], buildings: BuildingSet, paths: PathIndex) -> None:
@@ -349,5 +371,3 @@ def _finished(at: int, draft: _Draft) -> WorldObject:
         outline=draft.outline,
         building=draft.building,
     )
-
-

@@ -6,16 +6,24 @@ smaller area lies on the larger one, so that a lawn on a square is a lawn, which
 
 from dataclasses import dataclass
 
-from reasoned_explorer.world.osm.tags import Tags, is_below_ground, is_gone, is_set, layer_of, parse_count, parse_length_m
+from reasoned_explorer.world.osm.tags import (
+    Tags,
+    is_below_ground,
+    is_gone,
+    is_set,
+    layer_of,
+    parse_count,
+    parse_length_m,
+)
 from reasoned_explorer.world.taxonomy import Ground
 
 # Layers of areas, from below.
 BASE_LAYER, SEA_LAYER, LAND_LAYER, WATER_LAYER, DECK_LAYER = range(5)
 
+# What land is used for (residential, commercial, industrial …) does not say what one stands on: between the walls and
+# the roads of a residential area there may be pavement as well as yards. Such ground stays unknown.
 _BASE = {
-    ("landuse", "residential"): Ground.YARD,
     ("landuse", "garages"): Ground.YARD,
-    ("landuse", "industrial"): Ground.YARD,
     ("landuse", "depot"): Ground.YARD,
     ("landuse", "farmyard"): Ground.YARD,
     ("amenity", "school"): Ground.YARD,
@@ -47,15 +55,27 @@ _LAND = {
     **dict.fromkeys([("leisure", "pitch"), ("leisure", "track"), ("leisure", "ice_rink")], Ground.PITCH),
 }  # fmt: skip
 _WATER = frozenset({("natural", "water"), ("landuse", "basin"), ("landuse", "reservoir"), ("waterway", "riverbank"),
-                    ("waterway", "dock"), ("leisure", "swimming_pool"), ("amenity", "fountain")})  # fmt: skip
+                    ("waterway", "dock"), ("leisure", "swimming_pool")})  # fmt: skip
 _DECK = frozenset({("man_made", "pier"), ("man_made", "breakwater"), ("man_made", "quay"),
                    ("railway", "platform"), ("public_transport", "platform")})  # fmt: skip
 _AREA_HIGHWAYS = {"pedestrian": Ground.PLAZA, "footway": Ground.PAVEMENT, "platform": Ground.PAVEMENT,
                   "path": Ground.PATH, "cycleway": Ground.CYCLEWAY, "steps": Ground.STEPS, "track": Ground.PATH,
-                  "rest_area": Ground.PARKING, "services": Ground.PARKING}  # fmt: skip
+                  "rest_area": Ground.PARKING, "services": Ground.PARKING,
+                  "traffic_island": Ground.PAVEMENT}  # fmt: skip
 _ROADS = frozenset({"motorway", "motorway_link", "trunk", "trunk_link", "primary", "primary_link", "secondary",
                     "secondary_link", "tertiary", "tertiary_link", "unclassified", "residential", "living_street",
-                    "service", "road", "busway", "bus_guideway", "raceway", "traffic_island"})  # fmt: skip
+                    "service", "road", "busway", "bus_guideway", "raceway"})  # fmt: skip
+_AREA_HIGHWAYS |= dict.fromkeys(_ROADS, Ground.ROAD)
+# Of several keys the earlier one counts.
+_AREA_KEYS = ("man_made", "railway", "public_transport", "amenity", "leisure", "natural", "waterway", "landcover",
+              "landuse", "place")  # fmt: skip
+_AREA_GROUND: dict[tuple[str, str], tuple[int, Ground]] = {
+    **{pair: (BASE_LAYER, ground) for pair, ground in _BASE.items()},
+    **{pair: (LAND_LAYER, ground) for pair, ground in _LAND.items()},
+    **dict.fromkeys(_WATER, (WATER_LAYER, Ground.WATER)),
+    **dict.fromkeys(_DECK, (DECK_LAYER, Ground.PAVEMENT)),
+}
+_LARGEST_BASIN_M2 = 400.0
 _LINE_KEYS = ("highway", "railway", "barrier", "waterway")
 
 # Widths where the map gives none, metres: typical ones, assumed.
@@ -113,33 +133,33 @@ def is_area(tags: Tags) -> bool:
     return tags.get("natural") not in {"coastline", "tree_row"}
 
 
-def ground_of_area(tags: Tags) -> tuple[int, Ground] | None:
-    """Return the layer and the ground of an area, or None where it says nothing about the ground."""
-    if is_gone(tags) or is_below_ground(tags) or is_set(tags, "building") or is_set(tags, "building:part"):
-        return None
-    if is_set(tags, "tunnel") or is_set(tags, "bridge") or is_set(tags, "indoor"):
-        return None
-    if tags.get("parking") in {"multi-storey", "rooftop", "carports"} or tags.get("level", "0").startswith("-"):
+def ground_of_area(tags: Tags, *, area_m2: float = 0.0) -> tuple[int, Ground] | None:
+    """Return the layer and the ground of an area, or None where it says nothing about the ground.
+
+    The size tells a fountain's basin from a square that is named a fountain after what stands on it.
+    """
+    if _is_elsewhere(tags):
         return None
     highway = tags.get("area:highway") or tags.get("highway")
-    if highway is not None:
-        if highway in _ROADS:
-            return LAND_LAYER, Ground.PAVEMENT if highway == "traffic_island" else Ground.ROAD
-        if highway in _AREA_HIGHWAYS:
-            return LAND_LAYER, _AREA_HIGHWAYS[highway]
-    pairs = [(key, tags[key]) for key in ("man_made", "railway", "public_transport", "amenity", "leisure", "natural",
-                                          "waterway", "landcover", "landuse", "place") if key in tags]  # fmt: skip
-    for pair in pairs:
-        if pair in _DECK:
-            return DECK_LAYER, Ground.PAVEMENT
-        if pair in _WATER:
-            return WATER_LAYER, Ground.WATER
-        if pair in _LAND:
-            return LAND_LAYER, _LAND[pair]
-    for pair in pairs:
-        if pair in _BASE:
-            return BASE_LAYER, _BASE[pair]
-    return None
+    if highway in _AREA_HIGHWAYS:
+        return LAND_LAYER, _AREA_HIGHWAYS[highway]
+    if tags.get("amenity") == "fountain" and area_m2 <= _LARGEST_BASIN_M2:
+        return DECK_LAYER, Ground.WATER
+    pairs = [(key, tags[key]) for key in _AREA_KEYS if key in tags]
+    meanings = [_AREA_GROUND[pair] for pair in pairs if pair in _AREA_GROUND]
+    # What merely encloses is of interest only where nothing else is said.
+    return max(meanings, key=lambda meaning: meaning[0] > BASE_LAYER, default=None)
+
+
+def _is_elsewhere(tags: Tags) -> bool:
+    """Return whether an area is not there, or not on the ground."""
+    return (
+        is_gone(tags)
+        or is_below_ground(tags)
+        or any(is_set(tags, key) for key in ("building", "building:part", "tunnel", "bridge", "indoor"))
+        or tags.get("parking") in {"multi-storey", "rooftop", "carports"}
+        or tags.get("level", "0").startswith("-")
+    )
 
 
 def ground_of_line(tags: Tags) -> LineGround | None:

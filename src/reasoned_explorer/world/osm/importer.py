@@ -108,6 +108,8 @@ def import_osm_with_report(
     warnings += [f"{count} {what}" for what, count in features.lost.items()]
     if placed.counts["objects inside buildings dropped"]:
         warnings.append(f"{placed.counts['objects inside buildings dropped']} objects inside buildings dropped")
+    if region_counts["loose ends of coastline"]:
+        warnings.append(f"{region_counts['loose ends of coastline']} loose ends of coastline led to the nearest edge")
     if region_counts["stretches of unclear coast"]:
         warnings.append("the coastline is broken; check where the sea is")
     return world, ImportReport(bbox, extract.newest_edit, counts, tuple(warnings))

@@ -84,7 +84,7 @@ class Extract:
 
 @dataclass(frozen=True, slots=True)
 class _Torn:
-    """A way some of whose nodes had no place when it was read: (id, longitude, latitude), degrees, or (id, None, None)."""
+    """A way some of whose nodes, (id, longitude, latitude), had no place yet when it was read: (id, None, None)."""
 
     record: WayRecord
     nodes: tuple[tuple[int, float | None, float | None], ...]

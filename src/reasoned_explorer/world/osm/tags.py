@@ -60,7 +60,7 @@ CLASS_KEYS = frozenset(key for key, _ in _EXACT) | frozenset(_WILDCARD)
 
 
 def parse_length_m(text: str | None) -> float | None:
-    """Return a length in metres: ``"12"``, ``"12 m"``, ``"12,5"``, ``"40'"``, ``"5'10\\""``, ``"30 ft"``; else None.
+    """Return a length in metres: ``12``, ``12 m``, ``12,5``, ``40'``, ``5'10"``, ``30 ft``; else None.
 
     The length is finite and at least 0.
     """

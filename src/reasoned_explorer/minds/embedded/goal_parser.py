@@ -1,0 +1,400 @@
+"""Reads a goal sentence: what is sought, what it must be near, which ground is wanted and which is shunned."""
+
+import re
+import unicodedata
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import lru_cache
+
+from reasoned_explorer.minds.embedded.affordances import affordances_in
+from reasoned_explorer.minds.embedded.goal_words import (
+    ADJECTIVE_TAIL,
+    CLAUSE_STARTS,
+    CONTRACTIONS,
+    FRAMES,
+    GENERIC_HEADS,
+    GROUND_PATTERNS,
+    HERE,
+    INTANGIBLE,
+    NEAR_PATTERN,
+    NEGATION_PATTERN,
+    NP_END,
+    PURPOSE,
+    RELATION_OF,
+    SMALL_TALK,
+    STOP_WORDS,
+    is_wordlike,
+)
+from reasoned_explorer.minds.embedded.lexicon import ground_words, mended_word, thing_phrases
+from reasoned_explorer.model.errors import Fault, GoalError
+
+#: Longer goals are no sentence.
+MAX_GOAL_CHARACTERS = 500
+_EXPECTED = 'a thing or a place that can be found outdoors, e.g. "Find me a bench near a tree"'
+
+
+_PLACE_STARTS = frozenset({"a", "the", "some", "any", "somewhere", "someplace", "anywhere", "where", "place", "something"})
+
+
+class GoalKind(StrEnum):
+    """What sort of thing a goal asks for."""
+
+    OBJECT = "object"
+    PLACE = "place"
+    AFFORDANCE = "affordance"
+
+
+@dataclass(frozen=True, slots=True)
+class Phrase:
+    """A noun phrase of a goal.
+
+    Attributes:
+        words: Its words without articles: ``"red mailbox"``.
+        concept: Of its head in the lexicon, or None where the lexicon lacks it.
+        adjectives: Words before the head.
+    """
+
+    words: str
+    concept: str | None = None
+    adjectives: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class NearClause:
+    """What the sought thing must stand by.
+
+    Attributes:
+        relation: ``near``, ``under``, ``on``, ``in``, ``in_front`` or ``behind``.
+        target: The other thing.
+    """
+
+    relation: str
+    target: Phrase
+
+
+@dataclass(frozen=True, slots=True)
+class ParsedGoal:
+    """What a goal sentence means.
+
+    Attributes:
+        text: The sentence as it was given.
+        kind: Whether an object, a kind of place, or a place to do something is sought.
+        sought: What is sought; any of the alternatives will do. Empty for an affordance alone.
+        affordances: What one wants to do there, the main one first.
+        activity: For an affordance, the words that ask for it.
+        near: What the sought thing must stand by; all of them.
+        wanted_ground: Names of the ground to stay on (of `world.taxonomy.Ground`), sorted.
+        shunned_ground: Names of the ground to keep off, sorted.
+        excluded: What is not meant ("not a trash can").
+        absent: What must not be there ("without a roof", "no people").
+    """
+
+    text: str
+    kind: GoalKind
+    sought: tuple[Phrase, ...] = ()
+    affordances: tuple[str, ...] = ()
+    activity: str = ""
+    near: tuple[NearClause, ...] = ()
+    wanted_ground: tuple[str, ...] = ()
+    shunned_ground: tuple[str, ...] = ()
+    excluded: tuple[Phrase, ...] = ()
+    absent: tuple[Phrase, ...] = ()
+
+
+@lru_cache(maxsize=4096)
+def parse_goal(text: str) -> ParsedGoal:
+    """Return what a goal sentence means.
+
+    Raises:
+        GoalError: If it is empty, too long, or asks for nothing that can be found.
+    """
+    if not text.strip():
+        raise GoalError("goal", [Fault("the goal is empty", _EXPECTED)])
+    if len(text) > MAX_GOAL_CHARACTERS:
+        what = f"the goal has {len(text)} characters"
+        raise GoalError("goal", [Fault(what, f"one sentence of at most {MAX_GOAL_CHARACTERS} characters")])
+    return _Parser(text).parse()
+
+
+def _normalised(text: str) -> str:
+    text = unicodedata.normalize("NFKC", text).lower().replace("’", "'").replace("`", "'")
+    for short, long in CONTRACTIONS:
+        text = text.replace(short, long)
+    text = re.sub(r"[.!?;:()\[\]\"“”/]+", " , ", text)
+    text = re.sub(r"\s+(?:-|–|—)+\s+", " , ", text)
+    text = re.sub(r"[^\w\s,'&-]", " ", text)
+    text = re.sub(r"\s*,[\s,]*", " , ", text)
+    text = re.sub(r"\s+", " ", text).strip(" ,")
+    return CLAUSE_STARTS.sub(" , ", text)
+
+
+class _Parser:
+    """Takes clause by clause out of a sentence until what is sought is left."""
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+        self._wanted: set[str] = set()
+        self._shunned: set[str] = set()
+        self._near: list[NearClause] = []
+        self._excluded: list[Phrase] = []
+        self._absent: list[Phrase] = []
+
+    def parse(self) -> ParsedGoal:
+        clauses = [clause.strip() for clause in _normalised(self._text).split(" , ") if clause.strip()]
+        rest = " , ".join(clause for clause in map(self._without_ground, clauses) if clause)
+        rest = HERE.sub(" ", f" {rest} ").strip()
+        rest = NEGATION_PATTERN.sub(self._take_negation, f" {rest} ").strip(" ,")
+        framed, sought_text = _unframed(rest)
+        sought, affordances, activity = self._sought(sought_text, framed=framed)
+        if not sought and not affordances and not activity:
+            raise GoalError("goal", [Fault(f"{self._text!r} asks for nothing that can be found", self._expected())])
+        kind = GoalKind.AFFORDANCE if not sought else GoalKind.OBJECT
+        if sought and all(phrase.concept in _place_concepts() for phrase in sought):
+            kind = GoalKind.PLACE
+        return ParsedGoal(
+            text=self._text,
+            kind=kind,
+            sought=sought,
+            affordances=affordances,
+            activity=activity,
+            near=tuple(dict.fromkeys(self._near)),
+            wanted_ground=tuple(sorted(self._wanted)),
+            shunned_ground=tuple(sorted(self._shunned - self._wanted)),
+            excluded=tuple(self._excluded),
+            absent=tuple(self._absent),
+        )
+
+    def _expected(self) -> str:
+        if self._wanted or self._shunned or self._near or self._excluded or self._absent:
+            return f"what is to be found beside the conditions, {_EXPECTED}"
+        return _EXPECTED
+
+    # Conditions
+
+    def _without_ground(self, clause: str) -> str:
+        """Take the clauses about ground out of a clause."""
+
+        def take(match: re.Match[str]) -> str:
+            grounds, things, rest = _grounds_and_things(match["ground"])
+            if not grounds and not things:
+                return match.group()
+            if wanted:
+                if not grounds:
+                    return match.group()
+                self._wanted |= grounds
+            else:
+                self._shunned |= grounds
+                self._absent += things
+            return f" {rest}" if rest else " "
+
+        for wanted, pattern in GROUND_PATTERNS:
+            clause = pattern.sub(take, f" {clause} ")
+        return " ".join(clause.split())
+
+    def _take_negation(self, match: re.Match[str]) -> str:
+        phrases = _alternatives(match["what"])
+        if not phrases:
+            return " "
+        if match["not_that"]:
+            self._excluded += phrases
+        else:
+            self._absent += phrases
+        return " "
+
+    # What is sought
+
+    def _sought(self, text: str, *, framed: bool) -> tuple[tuple[Phrase, ...], tuple[str, ...], str]:
+        main, conditions = _split_near(text)
+        affordances = affordances_in(main)
+        alternatives = _alternatives(PURPOSE.split(main, maxsplit=1)[0]) if not _asks_to_do(main) else []
+        known = tuple(phrase for phrase in alternatives if phrase.concept is not None)
+        if known:
+            self._near += conditions
+            # "a bench to sit on" is a bench; what one does there adds nothing.
+            return known, (), ""
+        placed = [clause.target for clause in conditions if clause.relation == "with"]
+        self._near += conditions
+        if affordances:
+            return (), affordances, _activity(main)
+        if placed:  # "a place with a fountain"
+            self._near = [clause for clause in self._near if clause.target not in placed]
+            return tuple(placed[:1]), (), ""
+        unknown = tuple(phrase for phrase in alternatives if _findable(phrase.words))
+        if unknown and (framed or _short_noun(main)):
+            return unknown, (), ""
+        activity = _activity(main)
+        if _asks_to_do(main) and activity and _findable(activity) and (framed or main.split()[0] in _PLACE_STARTS):
+            return (), (), activity
+        if self._near and framed and _asks_for_place(main):  # "somewhere near a fountain"
+            first = self._near.pop(0)
+            return (first.target,), (), ""
+        affordances = affordances_in(text)
+        if affordances:
+            return (), affordances, _activity(text)
+        return (), (), ""
+
+
+@lru_cache(maxsize=1)
+def _place_concepts() -> frozenset[str]:
+    from reasoned_explorer.minds.embedded.lexicon import concepts
+
+    return frozenset(n for n, c in concepts().items() if c.kind in {"place", "area", "scene", "building", "quality"})
+
+
+def _unframed(text: str) -> tuple[bool, str]:
+    """Cut "could you please find me" and the like off; tell whether something was cut."""
+    framed = False
+    text = text.strip(" ,")
+    while True:
+        match = FRAMES.match(text)
+        if match is None or match.end() == 0:
+            return framed, text.strip(" ,")
+        framed = framed or bool(match["frame"])
+        text = text[match.end() :].strip(" ,")
+
+
+def _split_near(text: str) -> tuple[str, list[NearClause]]:
+    """Part what is sought from what it must stand by."""
+    matches = list(NEAR_PATTERN.finditer(text))
+    conditions = []
+    if not matches:
+        return text, []
+    main = text[: matches[0].start()].strip(" ,")
+    if not main:  # "near the fountain there is a bench, find it": too unusual to guess
+        return text, []
+    ends = [match.start() for match in matches[1:]] + [len(text)]
+    for match, end in zip(matches, ends, strict=True):
+        target_text = text[match.end() : end].split(" , ")[0]
+        relation = RELATION_OF[match["relation"]]
+        parts = re.split(r"\s+and\s+", target_text) if relation in {"near", "with"} else [target_text]
+        for part in parts:
+            found = _alternatives(part)[:1]
+            conditions += [NearClause(relation, phrase) for phrase in found if phrase.concept or _findable(phrase.words)]
+        if not conditions and relation in {"on", "in", "with"}:
+            main = f"{main} {text[match.start() : end]}".strip()
+    return main, conditions
+
+
+def _alternatives(text: str) -> list[Phrase]:
+    found = []
+    for part in re.split(r"\s+(?:or|nor)\s+|\s+,\s+(?:or\s+)?", text):
+        phrase = _phrase(part)
+        if phrase is not None:
+            found.append(phrase)
+    return list(dict.fromkeys(found))
+
+
+def _phrase(text: str) -> Phrase | None:
+    """Return the noun phrase at the start of a text: the last known thing before a preposition or a clause is its head."""
+    words = [word for word in text.split() if word != ","]
+    while words and words[0] in STOP_WORDS:
+        words.pop(0)
+    if not words:
+        return None
+    return _known_phrase(words) or _mended_phrase(words) or _unknown_phrase(words)
+
+
+def _known_phrase(words: list[str]) -> Phrase | None:
+    table = thing_phrases()
+    place, head = 0, None
+    while place < len(words):
+        found = table.at(words, place)
+        if found is not None:
+            head = (place, *found)
+            place += found[0]
+        elif words[place] in NP_END:
+            break
+        else:
+            place += 1
+    if head is None:
+        return None
+    start, count, concept = head
+    # A word behind the head makes another head of it: "tree house", "fountain pen".
+    follower = words[start + count] if start + count < len(words) else None
+    if follower is not None and follower not in NP_END and follower not in STOP_WORDS and follower not in ADJECTIVE_TAIL:
+        return None
+    adjectives = tuple(word for word in words[:start] if word not in STOP_WORDS)
+    if any(word in SMALL_TALK for word in adjectives):
+        adjectives = ()
+    noun = " ".join(words[start : start + count])
+    return Phrase(" ".join([*adjectives, noun]), concept, adjectives)
+
+
+def _mended_phrase(words: list[str]) -> Phrase | None:
+    mended = [mended_word(word) or word for word in words]
+    return _known_phrase(mended) if mended != words else None
+
+
+def _unknown_phrase(words: list[str]) -> Phrase | None:
+    kept: list[str] = []
+    for word in words:
+        if word in NP_END:
+            break
+        kept.append(word)
+    kept = [word for word in kept if word not in STOP_WORDS]
+    if not kept or kept[-1] in GENERIC_HEADS:
+        return None
+    return Phrase(" ".join(kept[:6]), None, tuple(kept[:-1][:5]))
+
+
+def _findable(words: str) -> bool:
+    content = [word for word in words.split() if word not in STOP_WORDS and word not in GENERIC_HEADS]
+    return (
+        bool(content)
+        and all(is_wordlike(word) for word in content)
+        and not any(word in INTANGIBLE or word in SMALL_TALK for word in content)
+    )
+
+
+def _short_noun(text: str) -> bool:
+    words = text.split()
+    return 0 < len(words) <= 3 and not any(word in SMALL_TALK for word in words) and len(words[-1]) > 3
+
+
+def _asks_for_place(text: str) -> bool:
+    words = [word for word in text.split() if word not in STOP_WORDS]
+    return not words or words[0] in GENERIC_HEADS or words[-1] in GENERIC_HEADS
+
+
+def _asks_to_do(text: str) -> bool:
+    """Tell whether a text names no thing but what one wants to do: "somewhere to …", "where can i …"."""
+    return bool(re.match(r"(?:(?:a|an|the|some|any|good|nice|quiet|safe|shady|sunny|dry|cool|warm|close|next|[\w-]+ly|"
+                         r"comfortable|cosy|cozy|pretty|beautiful|calm|peaceful|suitable|great|proper|decent) )*"
+                         r"(?:somewhere|someplace|anywhere|where|place|places|spot|spots|area|location|something|anything|"
+                         r"thing|way|to|i|we|my|our|me|us)\b", text))  # fmt: skip
+
+
+def _activity(text: str) -> str:
+    words = [word for word in text.split() if word not in STOP_WORDS and word not in GENERIC_HEADS and word != ","]
+    return " ".join(words[:12])
+
+
+def _grounds_and_things(text: str) -> tuple[set[str], list[Phrase], str]:
+    """Read a list of grounds, e.g. "the grass and any road"; return them, what is no ground, and what comes after."""
+    grounds: set[str] = set()
+    things: list[Phrase] = []
+    table = ground_words()
+    words = text.split()
+    place = 0
+    while place < len(words):
+        if words[place] in {"and", "or", "nor", "the", "a", "an", "any", "all", "this", "that", "of", "on", "onto", "its"}:
+            place += 1
+            continue
+        for count in (3, 2, 1):
+            hit = table.get(" ".join(words[place : place + count]))
+            if hit is not None and place + count <= len(words):
+                grounds |= hit
+                place += count
+                break
+        else:
+            if place + 1 < len(words) and words[place + 1] in table and words[place] not in NP_END:
+                place += 1  # an adjective: "wet grass"
+                continue
+            break
+    rest = words[place:]
+    if not grounds:
+        things = [p for p in _alternatives(" ".join(rest).replace(" and ", " or ")) if p.concept]
+        return grounds, things, ""
+    while rest and rest[0] in {"only", "please", "there", "always", "itself", "instead", "though", "all", "at", "time"}:
+        rest.pop(0)
+    return grounds, things, " ".join(rest)

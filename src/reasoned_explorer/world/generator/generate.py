@@ -1,0 +1,226 @@
+"""The generator: from a district's name, a seed and a size to a world."""
+
+import math
+
+import numpy as np
+import shapely
+
+from reasoned_explorer.world.generator.assemble import building_of, regions_of, rings_of, ways_of
+from reasoned_explorer.world.generator.furniture import Furnisher, Pull, Statistics, Thing, standing_size
+from reasoned_explorer.world.generator.greenery import plant_bushes, plant_trees
+from reasoned_explorer.world.generator.ground import GroundPlan
+from reasoned_explorer.world.generator.occupancy import Occupancy
+from reasoned_explorer.world.generator.shapes import Points, heading_of
+from reasoned_explorer.world.generator.sites import Sites, find_sites, zone_of
+from reasoned_explorer.world.generator.sketch import Sketch, Zone
+from reasoned_explorer.world.generator.streets import add_crossings
+from reasoned_explorer.world.generator.town import FILLS, fill_district, fill_town
+from reasoned_explorer.world.generator.traffic import park_cars
+from reasoned_explorer.world.taxonomy import OBJECT_CLASSES, Ground
+from reasoned_explorer.world.world import Bounds, Building, World, WorldObject
+
+_AREA_CLASS = {"playground": "playground", "pitch": "pitch", "lawn": "lawn", "meadow": "lawn", "picnic": "lawn"}
+
+
+def build_world(district: str, *, seed: int, size_m: float, statistics: Statistics, pull: Pull | None = None) -> World:
+    """Return a generated world; the arguments are taken to be sound (see `generate_world`).
+
+    Args:
+        district: A name of `DISTRICTS`.
+        seed: Of all draws.
+        size_m: Length of the sides.
+        statistics: What stands near what in real places.
+        pull: How strongly the statistics act, for experiments.
+    """
+    half = size_m / 2
+    sketch = Sketch(shapely.box(-half, -half, half, half), seed)
+    if district == "town":
+        fill_town(sketch)
+    else:
+        fill_district(sketch, _zone(district))
+    crossings = add_crossings(sketch)
+    regions, ways = regions_of(sketch), ways_of(sketch)
+    shells = tuple(building_of(item, np.empty((0, 2))) for item in sketch.footprints)
+    plan = GroundPlan(regions, ways, shells, sketch.box)
+    sites = find_sites(sketch, plan, crossings)
+    furnisher = Furnisher(sketch, plan, sites, Occupancy(), statistics, pull or Pull())
+    _stand_areas(sketch, furnisher)
+    _equip(sketch)
+    _stand_fixtures(sketch, plan, furnisher)
+    _stand_bulk(sketch, furnisher, "car", *park_cars(sketch, plan, crossings))
+    trees, crowns = plant_trees(sketch, plan)
+    _stand_bulk(sketch, furnisher, "tree", trees, np.zeros(len(trees)), crowns)
+    _stand_hosts(sketch, furnisher)
+    furnisher.furnish()
+    bushes, widths = plant_bushes(sketch, plan)
+    _stand_bulk(sketch, furnisher, "shrub", bushes, np.zeros(len(bushes)), widths)
+    objects = tuple(
+        WorldObject(
+            id=index,
+            class_name=thing.class_name,
+            x_m=round(thing.x_m, 3),
+            y_m=round(thing.y_m, 3),
+            heading_rad=round(thing.heading_rad, 5),
+            size_m=thing.size_m,
+            attributes=thing.attributes or {},
+            outline=thing.outline,
+            building=thing.building,
+        )
+        for index, thing in enumerate(furnisher.things)
+    )
+    buildings = _with_entrances(sketch, plan, sites, furnisher.things)
+    size = f"{size_m:g}"
+    return World(
+        name=f"{district}:{seed}@{size}",
+        bounds=Bounds(-half, -half, half, half),
+        regions=regions,
+        ways=ways,
+        buildings=buildings,
+        objects=objects,
+        source=f"generated {district} seed={seed} size={size}",
+        seed=seed,
+    )
+
+
+def _zone(district: str) -> Zone:
+    return next(zone for zone in FILLS if zone == district)
+
+
+def _stand_areas(sketch: Sketch, furnisher: Furnisher) -> None:
+    """Make playgrounds, pitches and lawns objects with an outline, and equip the playgrounds."""
+    chosen = [patch for patch in sketch.patches if patch.role in _AREA_CLASS]
+    if not chosen:
+        return
+    inside = shapely.intersection(np.array([patch.area for patch in chosen]), sketch.box)
+    spots = [area.representative_point() for area in inside]
+    zones = zone_of(sketch, shapely.get_coordinates(spots))
+    for patch, area, spot, zone in zip(chosen, inside, spots, zones.tolist(), strict=True):
+        name = _AREA_CLASS[patch.role]
+        if not isinstance(area, shapely.Polygon) or area.area < 60.0:
+            continue
+        min_x, min_y, max_x, max_y = area.bounds
+        outline, _ = rings_of(area)
+        size = (round(max_x - min_x, 1), round(max_y - min_y, 1), OBJECT_CLASSES[name].size_m[2])
+        furnisher.stand(Thing(name, spot.x, spot.y, 0.0, size, outline=outline), zone=zone)
+
+
+def _equip(sketch: Sketch) -> None:
+    """Give every playground a slide, swings and benches to watch from, and pedestrian streets rows of bollards."""
+    for index, patch in enumerate(sketch.patches):
+        if patch.role != "playground":
+            continue
+        rng = sketch.rng("playground", index)
+        middle, reach = patch.area.representative_point(), math.sqrt(patch.area.area / math.pi)
+        turn = float(rng.uniform(0, 2 * math.pi))
+        names = ("slide", "swing", "bench", "swing", "bench")[: 3 if reach < 7.0 else 5]
+        for place, name in enumerate(names):
+            angle = turn + place * 2 * math.pi / len(names)
+            far = reach * (0.5 if name != "bench" else 0.85)
+            x, y = middle.x + far * math.sin(angle), middle.y + far * math.cos(angle)
+            sketch.put(name, x, y, (angle + math.pi) % (2 * math.pi))
+    for index, street in enumerate(sketch.streets):
+        if street.road_m > 0 or sketch.rng("bollards", index).random() < 0.25:
+            continue
+        line, far = shapely.LineString(street.line), 11.0
+        for where, ahead in ((far, far + 0.5), (line.length - far, line.length - far - 0.5)):
+            if line.length < 3 * far:
+                continue
+            foot, tip = (np.array(line.interpolate(value).coords[0]) for value in (where, ahead))
+            step = (tip - foot) / max(float(np.hypot(*(tip - foot))), 1e-6)
+            aside = np.array([-step[1], step[0]])
+            # A wide gap in the middle lets the fire brigade through.
+            for offset in (-4.0, -3.0, -2.0, 2.0, 3.0, 4.0):
+                sketch.put("bollard", *(foot + aside * offset).tolist(), float(math.atan2(*step)) % (2 * math.pi))
+
+
+def _stand_fixtures(sketch: Sketch, plan: GroundPlan, furnisher: Furnisher) -> None:
+    """Stand what belongs to a design, where there is ground for it."""
+    if not sketch.fixtures:
+        return
+    points = np.array([(item.x_m, item.y_m) for item in sketch.fixtures])
+    inside = shapely.contains_xy(shapely.buffer(sketch.box, -3.0), points)
+    inside &= ~np.isin(plan.at(points), [Ground.ROAD, Ground.WATER, Ground.BUILDING])
+    zones = zone_of(sketch, points)
+    for item, zone, fits in zip(sketch.fixtures, zones.tolist(), inside.tolist(), strict=True):
+        size = item.size_m or standing_size(item.class_name)
+        if fits and furnisher.room(item.class_name, item.x_m, item.y_m, item.heading_rad, size):
+            furnisher.stand(
+                Thing(item.class_name, item.x_m, item.y_m, item.heading_rad, size, attributes=item.attributes),
+                zone=zone,
+            )
+
+
+def _stand_bulk(
+    sketch: Sketch, furnisher: Furnisher, name: str, points: Points, headings: Points, widths: Points | None = None
+) -> None:
+    """Stand many of a kind that were laid out together, those left out for which there is no room."""
+    rng = sketch.rng("bulk", name)
+    zones = zone_of(sketch, points).tolist()
+    length, depth, height = standing_size(name)
+    scales = rng.uniform(0.94, 1.06, (len(points), 2))
+    things: list[Thing] = []
+    kept: list[int] = []
+    for index, (x, y) in enumerate(points.tolist()):
+        if widths is not None:
+            wide = float(widths[index])
+            size = (wide, wide, round(wide * height / length * float(scales[index, 0]), 1))
+        else:
+            size = (length, round(depth * float(scales[index, 0]), 2), round(height * float(scales[index, 1]), 2))
+        if furnisher.room(name, x, y, float(headings[index]), size):
+            things.append(Thing(name, x, y, float(headings[index]), size))
+            kept.append(zones[index])
+    furnisher.stand_many(things, kept)
+
+
+def _stand_hosts(sketch: Sketch, furnisher: Furnisher) -> None:
+    """Stand the places that certain buildings certainly hold, at their main entrances."""
+    for index, item in enumerate(sketch.footprints):
+        if not item.hosts or item.entrance is None:
+            continue
+        point = np.array([item.entrance])
+        zone = int(zone_of(sketch, point)[0])
+        centre = item.area.centroid
+        outward = point - np.array([[centre.x, centre.y]])
+        heading = float(heading_of(outward)[0])
+        for place, name in enumerate(item.hosts):
+            x, y = item.entrance
+            shift = 2.4 * place
+            x, y = x + shift * math.cos(heading), y - shift * math.sin(heading)
+            furnisher.stand(Thing(name, x, y, heading, OBJECT_CLASSES[name].size_m, index), zone=zone)
+
+
+def _with_entrances(sketch: Sketch, plan: GroundPlan, sites: Sites, things: list[Thing]) -> tuple[Building, ...]:
+    """Return the buildings, each with a main entrance on its best side and one for each place that it holds."""
+    doors = np.flatnonzero(sites.buildings >= 0)
+    best: dict[int, Points] = {}
+    first_rank: dict[int, tuple[float, float]] = {}
+    if len(doors):
+        outward = np.column_stack([np.sin(sites.headings[doors]), np.cos(sites.headings[doors])])
+        before = plan.at(sites.points[doors] + 1.4 * outward)
+        rank = np.select([before == Ground.PLAZA, before == Ground.PAVEMENT], [0.0, 1.0], 2.0)
+        for place, door in enumerate(doors.tolist()):
+            home = int(sites.buildings[door])
+            key = (float(rank[place]), float(place))
+            if home not in first_rank or key < first_rank[home]:
+                first_rank[home], best[home] = key, sites.points[door]
+    held: dict[int, list[tuple[float, float]]] = {}
+    for thing in things:
+        if thing.building >= 0:
+            held.setdefault(thing.building, []).append((thing.x_m, thing.y_m))
+    wanted: list[tuple[float, float]] = []
+    owner: list[int] = []
+    for index, item in enumerate(sketch.footprints):
+        points = [] if item.entrance is None else [item.entrance]
+        if not points and index in best and item.min_height_m == 0:
+            points = [(float(best[index][0]), float(best[index][1]))]
+        points += [point for point in held.get(index, []) if point not in points]
+        wanted += points
+        owner += [index] * len(points)
+    if not wanted:
+        return tuple(building_of(item, np.empty((0, 2))) for item in sketch.footprints)
+    # Entrances lie on the outline to the millimetre.
+    walls = np.array([item.area.exterior for item in sketch.footprints])[owner]
+    at = shapely.line_interpolate_point(walls, shapely.line_locate_point(walls, shapely.points(np.array(wanted))))
+    snapped = np.round(shapely.get_coordinates(at), 3)
+    parts = np.split(snapped, np.searchsorted(owner, np.arange(1, len(sketch.footprints))))
+    return tuple(building_of(item, part) for item, part in zip(sketch.footprints, parts, strict=True))

@@ -1,0 +1,132 @@
+"""Trees and bushes: rows along streets, promenades and quays, woods, groves, hedges, gardens."""
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from reasoned_explorer.world.generator.ground import GroundPlan
+from reasoned_explorer.world.generator.shapes import Points, along, left_of, spread, thin
+from reasoned_explorer.world.generator.sketch import Sketch
+from reasoned_explorer.world.taxonomy import Ground
+
+#: Spacing of trees by what a patch is for, metres, and the share of the sites that are planted. Assumed.
+_PLANTING: dict[str, tuple[float, float]] = {
+    "wood": (5.6, 0.9),
+    "grove": (10.0, 0.6),
+    "park": (19.0, 0.4),
+    "meadow": (24.0, 0.3),
+    "picnic": (15.0, 0.5),
+    "campus": (17.0, 0.4),
+    "lawn": (16.0, 0.35),
+    "garden": (11.0, 0.4),
+    "gardens": (12.5, 0.45),
+    "courtyard": (13.0, 0.25),
+    "strip": (9.0, 0.5),
+    "verge": (7.0, 0.5),
+    "corner": (6.0, 0.6),
+    "plaza": (17.0, 0.18),
+    "forecourt": (13.0, 0.25),
+    "gap": (8.0, 0.4),
+}
+_BUSHES: dict[str, tuple[float, float]] = {
+    "garden": (5.0, 0.35),
+    "gardens": (7.0, 0.3),
+    "wood": (11.0, 0.4),
+    "park": (30.0, 0.3),
+    "verge": (4.0, 0.3),
+    "campus": (26.0, 0.3),
+    "courtyard": (9.0, 0.2),
+}
+_TREE_GROUND = (Ground.GRASS, Ground.WOOD, Ground.GARDEN, Ground.YARD, Ground.PLAZA, Ground.PAVEMENT)
+
+
+def plant_trees(sketch: Sketch, plan: GroundPlan) -> tuple[Points, NDArray[np.float64]]:
+    """Return where trees stand, shape (n, 2), and the diameters of their crowns, metres."""
+    spots: list[Points] = []
+    crowns: list[NDArray[np.float64]] = []
+    margins: list[NDArray[np.float64]] = []
+
+    def add(at: Points, crown: NDArray[np.float64], margin: float) -> None:
+        spots.append(at)
+        crowns.append(crown)
+        margins.append(np.full(len(at), margin))
+
+    for index, street in enumerate(sketch.streets):
+        if street.trees <= 0:
+            continue
+        rng = sketch.rng("street trees", index)
+        at, tangents = along(street.line, street.trees, start_m=6.0, end_m=6.0)
+        normals = left_of(tangents)
+        offset = street.road_m / 2 + 1.1 if street.road_m > 0 else 2.6
+        for side in (1.0, -1.0):
+            keep = rng.random(len(at)) < 0.9
+            add((at + side * offset * normals)[keep], rng.uniform(3.6, 6.0, int(keep.sum())), 1.2)
+    for index, trail in enumerate(sketch.trails):
+        if trail.width_m >= 4.4 and trail.ground == Ground.PATH:
+            rng = sketch.rng("alley", index)
+            at, tangents = along(trail.line, 8.5, start_m=5.0, end_m=5.0)
+            normals = left_of(tangents) * (trail.width_m / 2 + 2.2)
+            for side in (1.0, -1.0):
+                add(at + side * normals, rng.uniform(5.5, 7.5, len(at)), 0.5)
+    for index, patch in enumerate(sketch.patches):
+        if patch.role in _PLANTING:
+            rng = sketch.rng("patch trees", index)
+            spacing, share = _PLANTING[patch.role]
+            at = spread(rng, shapely.buffer(patch.area, -1.5), spacing)
+            at = at[rng.random(len(at)) < share]
+            add(at, rng.gamma(9.0, 0.62, len(at)) + 1.2, 0.6 if patch.role == "wood" else 1.0)
+    if not spots:
+        return np.empty((0, 2)), np.empty(0)
+    points, sizes, clear = np.vstack(spots), np.concatenate(crowns), np.concatenate(margins)
+    good = np.isin(plan.at(points), _TREE_GROUND) & shapely.contains_xy(shapely.buffer(sketch.box, -0.6), points)
+    good &= _clear_of_paths(sketch, points, clear)
+    if plan.walls is not None:
+        close, _ = plan.walls.query(shapely.points(points), predicate="dwithin", distance=2.2)
+        good[close] = False
+    points, sizes = points[good], sizes[good]
+    kept = thin(points, 3.4)
+    return points[kept], np.round(np.clip(sizes[kept], 2.5, 13.0), 1)
+
+
+def plant_bushes(sketch: Sketch, plan: GroundPlan) -> tuple[Points, NDArray[np.float64]]:
+    """Return where bushes stand, shape (n, 2), and their diameters, metres."""
+    spots, sizes = [], []
+    for index, patch in enumerate(sketch.patches):
+        if patch.role in _BUSHES:
+            rng = sketch.rng("bushes", index)
+            spacing, share = _BUSHES[patch.role]
+            at = spread(rng, shapely.buffer(patch.area, -1.0), spacing)
+            at = at[rng.random(len(at)) < share]
+            spots.append(at)
+            sizes.append(rng.uniform(0.8, 2.0, len(at)))
+    if not spots:
+        return np.empty((0, 2)), np.empty(0)
+    points, width = np.vstack(spots), np.round(np.concatenate(sizes), 1)
+    good = np.isin(plan.at(points), (Ground.GRASS, Ground.WOOD, Ground.GARDEN, Ground.YARD))
+    good &= shapely.contains_xy(shapely.buffer(sketch.box, -1.2), points)
+    good &= _clear_of_paths(sketch, points, np.full(len(points), 1.3))
+    if plan.walls is not None:
+        close, _ = plan.walls.query(shapely.points(points), predicate="dwithin", distance=1.3)
+        good[close] = False
+    return points[good], width[good]
+
+
+def _clear_of_paths(sketch: Sketch, points: Points, margins: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return which points keep a margin from trails, crossings and carriageways."""
+    clear = np.ones(len(points), bool)
+    lines = [(trail.line, trail.width_m) for trail in [*sketch.trails, *sketch.crossings]]
+    lines += [(street.line, street.road_m) for street in sketch.streets if street.road_m > 0]
+    if not lines or not len(points):
+        return clear
+    beds = shapely.buffer(
+        [shapely.LineString(line) for line, _ in lines],
+        np.array([width / 2 for _, width in lines]) + 0.5,
+        quad_segs=2,
+        cap_style="flat",
+    )
+    point, _ = shapely.STRtree(beds).query(shapely.points(points), predicate="intersects")
+    clear[point] = False
+    wide = np.flatnonzero(clear & (margins > 0.8))
+    point, _ = shapely.STRtree(beds).query(shapely.points(points[wide]), predicate="dwithin", distance=0.3)
+    clear[wide[point]] = False
+    return clear

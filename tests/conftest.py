@@ -1,0 +1,21 @@
+"""What all tests share."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+# These machines are noisy, and a test that fails must fail again: no deadlines, no chance.
+settings.register_profile("house", deadline=None, derandomize=True)
+settings.load_profile("house")
+
+SHARED = Path(__file__).resolve().parents[1] / ".." / "shared"
+
+
+@pytest.fixture(scope="session")
+def osm_folder() -> Path:
+    """Where real places lie for development; tests that need them skip where they are not there."""
+    folder = SHARED / "osm"
+    if not folder.is_dir():
+        pytest.skip("no real places beside this checkout (../shared/osm)")
+    return folder
