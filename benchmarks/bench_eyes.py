@@ -11,8 +11,8 @@ import numpy as np
 
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Camera
-from reasoned_explorer.simulation.captioner import SimulatedCaptioner
 from reasoned_explorer.simulation.caption_errors import NOISY, PERFECT
+from reasoned_explorer.simulation.captioner import SimulatedCaptioner
 from reasoned_explorer.simulation.eyes import Eyes
 from reasoned_explorer.simulation.sighting import ViewContent
 from reasoned_explorer.world.atlas import Atlas
@@ -29,7 +29,8 @@ def downtown(side_m: float, per_street_m: float, seed: int = 0) -> World:
     draw = np.random.Generator(np.random.PCG64(seed))
     pitch = _BLOCK_M + _STREET_M
     count = int(side_m / pitch)
-    buildings, objects = [], []
+    buildings: list[Building] = []
+    objects: list[WorldObject] = []
     street_classes = [n for n in CLASS_NAMES if OBJECT_CLASSES[n].kind in {"furniture", "plant", "person", "vehicle"}]
     for i in range(count):
         for j in range(count):

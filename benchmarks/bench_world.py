@@ -12,6 +12,7 @@ import math
 import statistics
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 
@@ -51,8 +52,14 @@ def city(side_m: float, seed: int = 1) -> World:
     names = [name for name, item in OBJECT_CLASSES.items() if item.kind in {"furniture", "plant"}]
     spots = _street_spots(rng, side_m, lines, count=int(side_m * side_m / 1e6 * 2500))
     objects = [
-        WorldObject(i, name := names[int(rng.integers(len(names)))], x_m, y_m, float(rng.uniform(0, 6.28)),
-                    OBJECT_CLASSES[name].size_m)
+        WorldObject(
+            i,
+            name := names[int(rng.integers(len(names)))],
+            x_m,
+            y_m,
+            float(rng.uniform(0, 6.28)),
+            OBJECT_CLASSES[name].size_m,
+        )
         for i, (x_m, y_m) in enumerate(spots)
     ]
     wave = np.linspace(0.0, side_m, 200)
@@ -81,10 +88,15 @@ def _houses(rng: np.random.Generator, x_m: float, y_m: float) -> Iterator[Buildi
     half, deep = inner / 2 - 3.0, 13.0
     for k in range(4):
         gap = float(rng.uniform(3.0, 12.0))
-        wing: Ring = np.asarray([(-half + gap, half), (-half + gap, half - deep), (half - deep - 4, half - deep),
-                                 (half - deep - 4, half)])
-        quarter = np.asarray([(math.cos(k * math.pi / 2), -math.sin(k * math.pi / 2)),
-                              (math.sin(k * math.pi / 2), math.cos(k * math.pi / 2))])
+        wing: Ring = np.asarray(
+            [(-half + gap, half), (-half + gap, half - deep), (half - deep - 4, half - deep), (half - deep - 4, half)]
+        )
+        quarter = np.asarray(
+            [
+                (math.cos(k * math.pi / 2), -math.sin(k * math.pi / 2)),
+                (math.sin(k * math.pi / 2), math.cos(k * math.pi / 2)),
+            ]
+        )
         yield Building(middle + wing @ quarter.T @ turn.T, 15.0)
 
 
@@ -103,8 +115,12 @@ Line = tuple[str, float, float, str]
 def _raster(repeats: int, *, quick: bool) -> Iterator[Line]:
     for side_m, aim_ms in ((1000.0, 60.0),) if quick else ((1000.0, 60.0), (3162.0, 600.0)):
         world = city(side_m)
-        yield (f"ground raster, {world.bounds.area_km2:.0f} km² at 0.5 m, {len(world.buildings)} buildings",
-               _median_s(lambda w=world: GroundRaster.of(w), repeats) * 1e3, aim_ms, "ms")
+        yield (
+            f"ground raster, {world.bounds.area_km2:.0f} km² at 0.5 m, {len(world.buildings)} buildings",
+            _median_s(partial(GroundRaster.of, world), repeats) * 1e3,
+            aim_ms,
+            "ms",
+        )
 
 
 def _index(repeats: int, *, quick: bool) -> Iterator[Line]:
@@ -114,11 +130,21 @@ def _index(repeats: int, *, quick: bool) -> Iterator[Line]:
     spots = [(float(x), float(y)) for x, y in rng.uniform(200.0, world.bounds.max_x_m - 200.0, (200, 2))]
     for radius_m, aim_us in ((80.0, 20.0), (15.0, 20.0)):
         hits = statistics.mean(len(index.within(x, y, radius_m)) for x, y in spots)
-        run = _median_s(lambda r=radius_m: [index.within(x, y, r) for x, y in spots], repeats)
+        run = _median_s(partial(_ask, index, spots, radius_m), repeats)
         yield f"objects within {radius_m:g} m ({hits:.0f} hits of {len(index)})", run / len(spots) * 1e6, aim_us, "µs"
     run = _median_s(lambda: [index.nearest(x, y, class_names=("bench",)) for x, y in spots], repeats)
     yield "nearest bench", run / len(spots) * 1e6, 40.0, "µs"
-    yield f"building the index of {len(index)} objects", _median_s(lambda: ObjectIndex.of(world), repeats) * 1e3, 200.0, "ms"
+    yield (
+        f"building the index of {len(index)} objects",
+        _median_s(lambda: ObjectIndex.of(world), repeats) * 1e3,
+        200.0,
+        "ms",
+    )
+
+
+def _ask(index: ObjectIndex, spots: list[tuple[float, float]], radius_m: float) -> None:
+    for x_m, y_m in spots:
+        index.within(x_m, y_m, radius_m)
 
 
 def _paths(repeats: int, *, quick: bool) -> Iterator[Line]:
@@ -128,13 +154,23 @@ def _paths(repeats: int, *, quick: bool) -> Iterator[Line]:
         start = time.perf_counter()
         space = geodesics.space(_WALKER, shunned=shunned)
         _ = space.stretches
-        yield f"free space, {world.bounds.area_km2:.0f} km², {what} (once)", (time.perf_counter() - start) * 1e3, 1000.0, "ms"
+        yield (
+            f"free space, {world.bounds.area_km2:.0f} km², {what} (once)",
+            (time.perf_counter() - start) * 1e3,
+            1000.0,
+            "ms",
+        )
         pairs = _pairs(geodesics, shunned, 400.0, 40)
         times = sorted(
-            _median_s(lambda a=a, b=b, s=shunned: geodesics.path(a, b, traveller=_WALKER, shunned=s), repeats) * 1e3
+            _median_s(partial(geodesics.path, a, b, traveller=_WALKER, shunned=shunned), repeats) * 1e3
             for a, b in pairs
         )
-        yield f"way of 400 m in {world.bounds.area_km2:.0f} km², {what}: median of 40", statistics.median(times), 15.0, "ms"
+        yield (
+            f"way of 400 m in {world.bounds.area_km2:.0f} km², {what}: median of 40",
+            statistics.median(times),
+            15.0,
+            "ms",
+        )
         yield f"way of 400 m in {world.bounds.area_km2:.0f} km², {what}: slowest of 40", times[-1], 15.0, "ms"
 
 
@@ -143,7 +179,8 @@ def _pairs(
 ) -> list[tuple[tuple[float, float], tuple[float, float]]]:
     """Return connected pairs of points whose way is about so long."""
     rng = np.random.Generator(np.random.PCG64(3))
-    side_m, pairs = geodesics.grid.cols * geodesics.grid.cell_m, []
+    side_m = geodesics.grid.cols * geodesics.grid.cell_m
+    pairs: list[tuple[tuple[float, float], tuple[float, float]]] = []
     while len(pairs) < count:
         a = (float(rng.uniform(0.0, side_m)), float(rng.uniform(0.0, side_m)))
         angle = float(rng.uniform(0.0, 2.0 * math.pi))
@@ -165,10 +202,10 @@ def _field(repeats: int, *, quick: bool) -> Iterator[Line]:
         ("one target", [(side_m / 2, side_m / 2)]),
         ("30 targets", [(float(x), float(y)) for x, y in rng.uniform(0.0, side_m, (30, 2))]),
     ):
-        run = _median_s(lambda t=targets: geodesics.field_m(t, traveller=_WALKER), repeats)
+        run = _median_s(partial(geodesics.field_m, targets, traveller=_WALKER), repeats)
         yield f"field of the whole world, {world.bounds.area_km2:.0f} km², {what}", run, aim_s, "s"
         walk = Traveller(flies=False, radius_m=0.35, collides=False)
-        run = _median_s(lambda t=targets, w=walk: geodesics.field_m(t, traveller=w), repeats)
+        run = _median_s(partial(geodesics.field_m, targets, traveller=walk), repeats)
         yield f"the same with nothing in the way, {what}", run, aim_s, "s"
 
 

@@ -4,15 +4,15 @@
 
 Only these two are meant to go in: other places judge what was learnt from them.
 
-How. In every place, points are drawn evenly over the bounds (seeded); those neither in a building nor in water are its
-*land*. Everything is compared with them:
+How. In every place, points are drawn evenly over the bounds (seeded); those not in a building are its *open ground*.
+Everything is compared with them:
 
 - ``class_given_class[a][b]``: the number of other b within 20 m of an a, summed over all a, over the number that one
   would expect there: the mean number of b within 20 m of a land point, times the land that lies within 20 m of the a
   (an a by a wall has less of it), over the land within 20 m of a land point on average. Observed and expected are added
   up over the places before they are divided, so each place is compared with itself. ``..._ahead``: the same, 10-30 m.
-- ``class_near_ground[g][c]``: the share of the c with ground g within 20 m over the share of the land points.
-- ``class_on_ground[g][c]``: the share of the c that stand on g over the share of the land points that do.
+- ``class_near_ground[g][c]``: the share of the c with ground g within 20 m over the share of the open points.
+- ``class_on_ground[g][c]``: the share of the c that stand on g over the share of the open points that do.
 - Shrinking: every lift is (observed + 4) / (expected + 4), as if 4 more had been seen and expected; a pair of which
   neither 4 were seen nor 4 expected is left out, which reads as 1.
 
@@ -63,10 +63,11 @@ class Place:
         world: The world.
         shapes: Shapely point or polygon of each object.
         codes: Class code of each object.
-        points: Land points.
-        ground: Ground code of all points (land, water and built), and of the land points within them.
-        all_points: All of them.
-        land_km2: Area of the land.
+        points: Points on open ground.
+        all_points: All of them, those in buildings too.
+        ground: Ground code of all points.
+        object_ground: Ground code below each object.
+        open_km2: Area of the open ground.
     """
 
     world: World
@@ -76,7 +77,7 @@ class Place:
     all_points: NDArray[np.object_]
     ground: Ints
     object_ground: Ints
-    land_km2: float
+    open_km2: float
 
 
 def prepare(world: World) -> Place:
@@ -89,7 +90,7 @@ def prepare(world: World) -> Place:
     all_points = shapely.points(x_m, y_m)
     layers = _layers(world)
     ground = _ground_at(all_points, layers)
-    is_land = (ground != Ground.BUILDING) & (ground != Ground.WATER)
+    is_open = ground != Ground.BUILDING
     shapes = np.empty(len(world.objects), dtype=object)
     shapes[:] = [_shape(item) for item in world.objects]
     places = shapely.points([(item.x_m, item.y_m) for item in world.objects])
@@ -98,11 +99,11 @@ def prepare(world: World) -> Place:
         world=world,
         shapes=shapes,
         codes=codes,
-        points=all_points[is_land],
+        points=all_points[is_open],
         all_points=all_points,
         ground=ground,
         object_ground=_ground_at(places, layers),
-        land_km2=bounds.area_km2 * float(is_land.mean()),
+        open_km2=bounds.area_km2 * float(is_open.mean()),
     )
 
 
@@ -149,8 +150,8 @@ def _counts(of: Any, near: Any, codes: Ints, low_m: float, high_m: float, *, sam
     return table
 
 
-def _land_around(of: Any, points: Any, low_m: float, high_m: float) -> Floats:
-    """Return how many land points lie between two distances of each shape."""
+def _open_around(of: Any, points: Any, low_m: float, high_m: float) -> Floats:
+    """Return how many open points lie between two distances of each shape."""
     at, other = shapely.STRtree(points).query(of, predicate="dwithin", distance=high_m)
     if low_m > 0.0:
         at = at[shapely.distance(of[at], points[other]) > low_m]
@@ -161,12 +162,12 @@ def pair_counts(place: Place, low_m: float, high_m: float) -> tuple[Floats, Floa
     """Return observed and expected numbers, shape (classes, classes): row a, column b."""
     seen = _counts(place.shapes, place.shapes, place.codes, low_m, high_m, same=True)
     anywhere = _counts(place.points, place.shapes, place.codes, low_m, high_m).mean(axis=0)
-    own = _land_around(place.shapes, place.points, low_m, high_m)
-    usual = float(_land_around(place.points, place.points, low_m, high_m).mean())
+    own = _open_around(place.shapes, place.points, low_m, high_m)
+    usual = float(_open_around(place.points, place.points, low_m, high_m).mean())
     observed = np.zeros((len(CLASS_NAMES), len(CLASS_NAMES)))
     np.add.at(observed, place.codes, seen)
-    land = np.bincount(place.codes, weights=own, minlength=len(CLASS_NAMES)) / usual
-    return observed, land[:, None] * anywhere[None, :]
+    around = np.bincount(place.codes, weights=own, minlength=len(CLASS_NAMES)) / usual
+    return observed, around[:, None] * anywhere[None, :]
 
 
 def ground_counts(place: Place) -> tuple[Floats, Floats, Floats, Floats]:
@@ -174,8 +175,9 @@ def ground_counts(place: Place) -> tuple[Floats, Floats, Floats, Floats]:
     shape = (len(Ground), len(CLASS_NAMES))
     number = np.bincount(place.codes, minlength=len(CLASS_NAMES)).astype(np.float64)
     near, near_expected, on, on_expected = (np.zeros(shape) for _ in range(4))
-    is_land = (place.ground != Ground.BUILDING) & (place.ground != Ground.WATER)
-    np.add.at(on, (place.object_ground, place.codes), 1.0)
+    is_open = place.ground != Ground.BUILDING
+    outside = place.object_ground != Ground.BUILDING
+    np.add.at(on, (place.object_ground[outside], place.codes[outside]), 1.0)
     for ground in Ground:
         chosen = place.all_points[place.ground == ground]
         if not len(chosen):
@@ -185,7 +187,7 @@ def ground_counts(place: Place) -> tuple[Floats, Floats, Floats, Floats]:
         np.add.at(near[ground], place.codes[hit], 1.0)
         any_hit = np.unique(tree.query(place.points, predicate="dwithin", distance=RADIUS_M)[0])
         near_expected[ground] = number * len(any_hit) / len(place.points)
-        on_expected[ground] = number * float((place.ground[is_land] == ground).mean())
+        on_expected[ground] = on.sum(axis=0) * float((place.ground[is_open] == ground).mean())
     return near, near_expected, on, on_expected
 
 
@@ -266,7 +268,7 @@ def compute(places: list[Place], sources: list[dict[str, str | int | float]]) ->
     grounds = [sum(parts) for parts in zip(*(ground_counts(place) for place in places), strict=True)]
     names, ground_names = list(CLASS_NAMES), [ground.name.lower() for ground in Ground]
     codes = np.concatenate([place.codes for place in places])
-    land_km2 = sum(place.land_km2 for place in places)
+    open_km2 = sum(place.open_km2 for place in places)
     open_ground = np.concatenate([place.ground[place.ground != Ground.BUILDING] for place in places])
     shares = {name: float((open_ground == code).mean()) for code, name in enumerate(ground_names)}
     return {
@@ -276,7 +278,7 @@ def compute(places: list[Place], sources: list[dict[str, str | int | float]]) ->
         "radius_m": RADIUS_M,
         "ahead_m": list(AHEAD_M),
         "density_per_km2": {
-            name: rounded(float((codes == code).sum()) / land_km2)
+            name: rounded(float((codes == code).sum()) / open_km2)
             for code, name in enumerate(names)
             if (codes == code).any()
         },
@@ -319,7 +321,7 @@ def main() -> int:
             "newest_edit": report.newest_edit,
         }
         sources.append(source)
-        print(f"{file.name}: {source['objects']} objects, {places[-1].land_km2:.3f} km² of land", file=sys.stderr)
+        print(f"{file.name}: {source['objects']} objects, {places[-1].open_km2:.3f} km² open", file=sys.stderr)
     text = written(compute(places, sources))
     arguments.output.write_text(text, encoding="utf-8")
     print(f"{arguments.output}: {len(text)} characters", file=sys.stderr)

@@ -12,17 +12,24 @@ from reasoned_explorer.simulation.sensors import SENSOR_NOISE, SensorNoise, sens
 keys = st.integers(0, 2**40)
 
 
+def chain(key: int, part: int) -> np.uint64:
+    """A compiled function hands out plain integers; what goes in must say that it is unsigned."""
+    return np.uint64(kernels.chain(np.uint64(key), part))
+
+
 @given(st.integers(0, 2**63), keys, keys)
 def test_compiled_draws_are_those_of_the_model(seed, first, second):
     key = np.uint64(draws.key_of(seed, "somewhere", first))
     assert int(kernels.chain(key, second)) == draws.key_of(seed, "somewhere", first, second)
-    chained = kernels.chain(key, second)
+    chained = chain(key, second)
     assert kernels.unit(chained) == draws.uniform(seed, "somewhere", first, second)
-    assert kernels.normals(chained)[0] == pytest.approx(draws.normal(seed, "somewhere", first, second), rel=1e-14, abs=1e-14)
+    assert kernels.normals(chained)[0] == pytest.approx(
+        draws.normal(seed, "somewhere", first, second), rel=1e-14, abs=1e-14
+    )
 
 
 def test_both_normal_numbers_of_a_key_are_standard_and_independent():
-    pairs = np.array([kernels.normals(kernels.chain(np.uint64(7), i)) for i in range(20_000)])
+    pairs = np.array([kernels.normals(chain(7, i)) for i in range(20_000)])
     assert np.abs(pairs.mean(axis=0)).max() < 0.03
     assert np.allclose(pairs.std(axis=0), 1.0, atol=0.02)
     assert abs(np.corrcoef(pairs.T)[0, 1]) < 0.03
@@ -34,7 +41,7 @@ def test_the_slow_error_keeps_its_size_whatever_the_time_step(step_s):
     true, array = np.zeros(kernels.TRUE_SIZE), noise.as_array()
     values = []
     for i in range(20_000):
-        kernels.wander(true, array, kernels.chain(np.uint64(11), i), step_s)
+        kernels.wander(true, array, chain(11, i), step_s)
         values.append(true[kernels.TRUE_WANDER_X])
     independent = max(1.0, 20_000 * min(1.0, step_s / noise.wander_tau_s))
     assert np.std(values) == pytest.approx(noise.wander_sigma_m, rel=4.0 / math.sqrt(independent))

@@ -162,7 +162,7 @@ class Mission:
             RecordError: If the record cannot be written; the mission ends at once and what was written stays.
             KeyboardInterrupt: If a person stops it; the record then says so and ends at its last whole step.
         """
-        header = self._header()
+        header = self.header
         steps: list[StepRecord] = []
         if folder is None:
             return self._run(header, steps, None, on_step)
@@ -219,7 +219,7 @@ class Mission:
         settings, ledger = self.settings, Ledger()
         latency = latency_profile(settings.latency)
         # The oracle alone may read the truth; it is the only one that asks for it.
-        truth = OracleTruth(self.atlas, self.judge, self.profile)
+        truth = OracleTruth(self.atlas, self.judge, self.profile, settings.explorer)
         minds = make_minds(
             MindContext(self.clock, latency, ledger, settings.seed, truth),
             settings.minds,
@@ -228,15 +228,16 @@ class Mission:
             checker=settings.checker,
         )
 
-        async def charge_captions(name: str, key: tuple[int, ...], count: int) -> None:
+        async def charge_captions(_role: str, key: tuple[int, ...], count: int) -> None:
             started_s = self.clock.now_s()
             spent_s = [latency.duration_s("caption", settings.seed, *key, index) for index in range(count)]
             await self.clock.think(max(spent_s, default=0.0))
             ledger.add_all(
-                CallRecord("caption", name, (*key, index), started_s, seconds) for index, seconds in enumerate(spent_s)
+                CallRecord("caption", settings.captioner, (*key, index), started_s, seconds)
+                for index, seconds in enumerate(spent_s)
             )
 
-        captioner = CAPTIONERS.load(settings.captioner)(CaptionerContext(charge=charge_captions, seed=settings.seed))
+        captioner = CAPTIONERS.load(settings.captioner)(CaptionerContext(self.clock, settings.seed, charge_captions))
         self._labels = (make_planner(settings.planner, minds, settings.planner_settings), minds.label, captioner.label)
         vehicle = SimulatedVehicle(
             self.atlas, self.profile, self.start, clock=self.clock, eyes=Eyes(self.atlas), seed=settings.seed
@@ -244,7 +245,9 @@ class Mission:
         parts = Parts(vehicle, captioner, self._labels[0], minds.checker, self.clock, ledger)
         return Explorer(parts, settings.explorer)
 
-    def _header(self) -> MissionHeader:
+    @property
+    def header(self) -> MissionHeader:
+        """What the mission starts with."""
         start, world = self.start, self.atlas.world
         length_m = self.judge.reference_length_m(start)
         way = self.judge.reference_path(start)

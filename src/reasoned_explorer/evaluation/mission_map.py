@@ -79,7 +79,8 @@ def compose_mission(world: World, trace: MissionTrace) -> Sheet:
     board = Board(axes, shown, shown.width_m / map_width, sheet.palette.muted(_MUTED))
     paint_world(board, world)
     room = Room(board)
-    classes = place_badges(board, world.objects, Room(board), share=0.86, alpha=0.62)
+    near = board.metres_per_point < 0.7
+    classes = place_badges(board, world.objects, Room(board), share=0.86, alpha=0.62 if near else 0.45, dots=near)
     _write_scale(sheet, board, room, trace, (MARGIN_PT, foot))
     paint_mission(board, trace, room)
     letter_streets(board, world.ways, room, colour="#7b8088", limit=30)
@@ -143,9 +144,11 @@ def _write_scale(
     corner_m = np.array([board.bounds.min_x_m, board.bounds.min_y_m])
     marks = (np.vstack([places_of(trace), trace.track.reshape(-1, 2)]) - corner_m) / board.metres_per_point
 
+    reach = np.array([wide + 24.0, high + 24.0])
+
     def crowd(corner: tuple[float, float]) -> int:
         low = np.array(corner) - 12.0
-        return int(((marks > low) & (marks < low + (wide + 24.0, high + 24.0))).all(axis=1).sum())
+        return int(((marks > low) & (marks < low + reach)).all(axis=1).sum())
 
     # Of equally quiet corners the first: lower left, lower right, upper left, upper right.
     left, bottom = min(((x, y) for y in bottoms for x in lefts), key=crowd)

@@ -145,7 +145,7 @@ def places_of(trace: MissionTrace) -> FloatArray:
 
 def _paint_success_region(board: Board, trace: MissionTrace) -> None:
     """Where a halt counts: within R of the footprints; weaker goals get a fainter halo of their own."""
-    for grades, alpha, width in (((1,), 0.08, 0.6), ((2, 3), 0.17, 1.0)):
+    for grades, alpha, width in (((0, 1), 0.08, 0.6), ((2,), 0.17, 1.0)):
         footprints = [_footprint(goal) for goal in trace.goals if goal.grade in grades and _near(board, goal, trace)]
         if not footprints:
             continue
@@ -162,7 +162,7 @@ def _paint_success_region(board: Board, trace: MissionTrace) -> None:
         )
         areas = [goal.outline for goal in trace.goals if goal.grade in grades and goal.outline is not None]
         board.axes.add_collection(
-            PolyCollection(areas, facecolors=GOLD, edgecolors=GOLD_EDGE, linewidths=0.9, alpha=0.35, zorder=5.7),
+            PolyCollection(areas, facecolors=GOLD, edgecolors=GOLD_EDGE, linewidths=0.9, alpha=1.8 * alpha, zorder=5.7),
             autolim=False,
         )
 
@@ -301,7 +301,9 @@ def draw_path_point(axes: Axes, place: tuple[float, float], text: str) -> None:
 
 def _paint_goals(board: Board, trace: MissionTrace) -> None:
     shown = [goal for goal in trace.goals if board.shows_point(goal.x_m, goal.y_m)]
-    size_pt = 8.5 if len(shown) <= 20 else 6.0 if len(shown) <= 80 else 4.5
+    size_pt = min(
+        8.5 if len(shown) <= 20 else 6.0 if len(shown) <= 80 else 4.5, 8.5 / math.sqrt(board.metres_per_point)
+    )
     for goal in sorted(shown, key=lambda g: (g.reached, g.grade, g.x_m, g.y_m)):
         draw_goal(board.axes, (goal.x_m, goal.y_m), goal.grade, max(size_pt, 8.5) if goal.reached else size_pt)
 

@@ -8,23 +8,29 @@ bound and are called that.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
+import numpy as np
+
+from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.minds.context import MindContext, Minds
 from reasoned_explorer.model import Assessment, Fault, Goal, Scene, SettingsError, Verdict, likert_from_score
+from reasoned_explorer.task.compliance import STRETCH_M, compliance_of
 from reasoned_explorer.task.judge import Judge
 from reasoned_explorer.vehicles import VehicleProfile
 from reasoned_explorer.world.atlas import Atlas
+from reasoned_explorer.world.geodesic import DistanceField
 
-#: Distance over which the oracle's score falls from 5 towards 1 by a factor of e.
-_SCALE_M = 150.0
-#: How far one imagined scene lies beyond the other.
-_STRIDE_M = 10.0
-#: Declared a little inside the radius: the vehicle knows its position only to centimetres.
-_INSIDE_M = 0.5
+#: Distance over which the oracle's score falls from 5 towards 1 by a factor of e, metres.
+_SCALE_M = 200.0
+#: Legs are looked at in steps of this length, metres.
+_SAMPLE_M = 0.5
+#: A leg that ends before this has no way ahead, metres.
+_BLOCKED_M = 2.0
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class OracleTruth:
     """What the oracle reads.
 
@@ -32,11 +38,21 @@ class OracleTruth:
         atlas: The world.
         judge: Of the mission.
         profile: Of the vehicle.
+        explorer: How the agent explores: where a frontier stands depends on its score.
     """
 
     atlas: Atlas
     judge: Judge
     profile: VehicleProfile
+    explorer: ExplorerSettings
+
+    @cached_property
+    def remaining(self) -> DistanceField:
+        """How far it is from everywhere to success, on compliant ground."""
+        judge = self.judge
+        return self.atlas.geodesics.field_m(
+            judge.success_mask(), traveller=judge.traveller, shunned=judge.spec.forbidden
+        )
 
 
 class Oracle:
@@ -44,9 +60,8 @@ class Oracle:
 
     def __init__(self, truth: OracleTruth) -> None:
         self._truth = truth
-        self._field = truth.judge.distance_field()
 
-    async def evaluate(self, goal: Goal, scenes: Sequence[Scene]) -> Sequence[Assessment]:  # noqa: ARG002
+    async def evaluate(self, goal: Goal, scenes: Sequence[Scene]) -> Sequence[Assessment]:  # noqa: ARG002 - the protocol's
         """Score each scene by the remaining way from its waypoint."""
         return [self._assess(scene) for scene in scenes]
 
@@ -57,39 +72,72 @@ class Oracle:
         *,
         count: int,
     ) -> Sequence[Sequence[Scene]]:
-        """Return each scene moved on along the shortest way."""
-        return [[self._beyond(scene, child) for child in range(count)] for scene in scenes]
+        """Return each scene again: what lies beyond is in the score of its waypoint already."""
+        return [
+            [replace(scene, key=(*scene.key, child), depth=scene.depth + 1) for child in range(count)]
+            for scene in scenes
+        ]
 
     async def check(self, goal: Goal, scenes: Sequence[Scene]) -> Sequence[Verdict]:  # noqa: ARG002
-        """Say "found" exactly where the judge would agree."""
+        """Say "found" where the judge would agree."""
         return [self._verdict(scene.viewpoint or scene.waypoint) for scene in scenes]
 
     def _assess(self, scene: Scene) -> Assessment:
-        remaining_m = self._field.at(scene.waypoint.x_m, scene.waypoint.y_m) + _STRIDE_M * scene.depth
-        score = 1.0 + 4.0 * math.exp(-remaining_m / _SCALE_M) if math.isfinite(remaining_m) else 1.0
-        blocked = forbidden = False
-        if scene.viewpoint is not None:
-            here, there = scene.viewpoint, scene.viewpoint.ahead(self._leg_m(scene))
-            blocked = not self._is_free(here, there) or not math.isfinite(remaining_m)
-            forbidden = not self._truth.judge.leg_is_compliant((here.x_m, here.y_m), (there.x_m, there.y_m))
-        return Assessment(likert_from_score(score), blocked=blocked, forbidden=forbidden)
+        here = scene.viewpoint or scene.waypoint
+        there, remaining_m = self._frontier(here)
+        reachable, gone_m = math.isfinite(remaining_m), here.distance_to_m(there.x_m, there.y_m)
+        return Assessment(
+            likert_from_score(_score(remaining_m)),
+            # The oracle knows what shunned ground costs: to it, such a way is none.
+            blocked=not (reachable and gone_m >= _BLOCKED_M and self._is_compliant(here, there)),
+        )
 
-    def _leg_m(self, scene: Scene) -> float:
-        viewpoint = scene.viewpoint or scene.waypoint
-        return max(1.0, viewpoint.distance_to_m(scene.waypoint.x_m, scene.waypoint.y_m))
+    def _frontier(self, here: Pose) -> tuple[Pose, float]:
+        """Return where a leg to the frontier ahead would end, and how far it is from there to success.
 
-    def _is_free(self, here: Pose, there: Pose) -> bool:
+        The step to a frontier depends on its score, and its score on where the leg ends: a few rounds settle it.
+        """
+        level, free_m = self._truth.judge.spec.level, self._free_m(here)
+        there, remaining_m = here, math.inf
+        for _ in range(4):
+            step_m = self._truth.explorer.step_m(_score(remaining_m), level)
+            there = here.ahead(min(step_m, free_m))
+            remaining_m = self._truth.remaining.at(there.x_m, there.y_m)
+        return there, remaining_m
+
+    def _free_m(self, here: Pose) -> float:
+        """Return how far a straight leg goes before it comes near to what the vehicle collides with, metres."""
+        longest_m = self._truth.explorer.step_range_m(self._truth.judge.spec.level)[1]
         if not self._truth.profile.collides:
-            return True
-        return self._truth.judge.leg_is_free((here.x_m, here.y_m), (there.x_m, there.y_m))
+            return longest_m
+        space = self._truth.atlas.geodesics.space(self._truth.judge.traveller)
+        # The first metre is left out: the vehicle is there, whatever the cell that it stands in.
+        lengths = np.arange(1.0, longest_m + _SAMPLE_M, _SAMPLE_M)
+        points = np.stack(
+            (here.x_m + lengths * math.sin(here.heading_rad), here.y_m + lengths * math.cos(here.heading_rad)), axis=1
+        )
+        cells = np.floor(space.grid.cells_of(points)).astype(np.int64)
+        cols, rows = cells[:, 0], cells[:, 1]
+        inside = (cols >= 0) & (rows >= 0) & (cols < space.grid.cols) & (rows < space.grid.rows)
+        free = np.zeros(len(lengths), dtype=np.bool_)
+        free[inside] = space.free[rows[inside], cols[inside]]
+        return longest_m if free.all() else max(0.0, float(lengths[int(np.argmin(free))]) - _SAMPLE_M)
 
-    def _beyond(self, scene: Scene, child: int) -> Scene:
-        # The waypoint stays: what lies beyond it is counted by the depth, so that a branch keeps its order.
-        return replace(scene, key=(*scene.key, child), depth=scene.depth + 1)
+    def _is_compliant(self, here: Pose, there: Pose) -> bool:
+        spec = self._truth.judge.spec
+        if not spec.forbidden:
+            return True
+        legs = [(here.x_m, here.y_m), (there.x_m, there.y_m)]
+        # Half of what the judge allows: the next leg may begin where this one ends.
+        return compliance_of(legs, self._truth.atlas.ground, spec.forbidden).longest_stretch_m <= STRETCH_M / 2.0
 
     def _verdict(self, pose: Pose) -> Verdict:
-        report = self._truth.judge.success(pose, radius_m=self._truth.judge.success_radius_m - _INSIDE_M)
-        return Verdict(report.success, 1.0 if report.success else 0.0, "the judge agrees" if report.success else "")
+        success = self._truth.judge.success(pose.x_m, pose.y_m, pose.z_m).success
+        return Verdict(success, 1.0 if success else 0.0, "the judge agrees" if success else "")
+
+
+def _score(remaining_m: float) -> float:
+    return 1.0 + 4.0 * math.exp(-remaining_m / _SCALE_M) if math.isfinite(remaining_m) else 1.0
 
 
 def make_minds(context: MindContext) -> Minds:

@@ -80,7 +80,7 @@ class Explorer:
     on_step: Callable[[StepRecord], None] = lambda record: None
     graph: TopologicalGraph = field(init=False)
     _point: int = field(init=False, default=0)
-    _turn_rad: float = field(init=False, default=0.0)
+    _look_heading_rad: float | None = field(init=False, default=None)
     _looks_around: dict[int, int] = field(init=False, default_factory=dict)
     _look_next: bool = field(init=False, default=True)
     _faults_in_a_row: int = field(init=False, default=0)
@@ -157,7 +157,7 @@ class Explorer:
             return self._time_over()
         step.choice = self.graph.choose(self.parts.vehicle.pose)
         if step.choice is None:
-            return self._look_elsewhere(step)
+            return await self._look_elsewhere(step)
         await self._travel(step, step.choice)
         return self._time_over() if self._time_is_over() else None
 
@@ -170,7 +170,9 @@ class Explorer:
     # Look, describe, imagine, check.
 
     async def _look_and_think(self, goal: Goal, step: StepDraft) -> tuple[MissionEnd, str] | None:
-        look = await self._look(goal, step, self.settings.bearings_rad(self._turn_rad))
+        ahead_rad = self.parts.vehicle.pose.heading_rad
+        heading_rad = ahead_rad if self._look_heading_rad is None else self._look_heading_rad
+        look = await self._look(goal, step, [heading_rad + turn for turn in self.settings.bearings_rad()])
         if look is None:
             return None
         started_s, looked_s = self.parts.clock.now_s(), step.look_s
@@ -193,10 +195,9 @@ class Explorer:
         self._expand(goal, look, step)
         return None
 
-    async def _look(self, goal: Goal, step: StepDraft, bearings_rad: Sequence[float]) -> LookDraft | None:
-        """Look in some bearings and describe what is seen; None, with a note, where the camera gave nothing."""
-        heading_rad = self.parts.vehicle.pose.heading_rad
-        headings = [normalise_heading_rad(heading_rad + bearing_rad) for bearing_rad in bearings_rad]
+    async def _look(self, goal: Goal, step: StepDraft, headings_rad: Sequence[float]) -> LookDraft | None:
+        """Look in some headings and describe what is seen; None, with a note, where the camera gave nothing."""
+        headings = [normalise_heading_rad(heading_rad) for heading_rad in headings_rad]
         started_s = self.parts.clock.now_s()
         try:
             views = await self.parts.vehicle.look(headings)
@@ -245,9 +246,8 @@ class Explorer:
                 return None
             index, _verdict = best
             viewpoint = look.scenes[index].viewpoint or look.scenes[index].waypoint
-            bearing_rad = viewpoint.heading_rad - self.parts.vehicle.pose.heading_rad
             thought_s = step.think_s
-            again = await self._look(goal, step, [bearing_rad])
+            again = await self._look(goal, step, [viewpoint.heading_rad])
             # Describing it ran while the caller's own clock of thinking did: count it once.
             step.think_s = thought_s
             if again is None:
@@ -289,38 +289,50 @@ class Explorer:
             look.frontiers[index] = frontier.id
             step.touched[frontier.id] = frontier
 
-    def _look_elsewhere(self, step: StepDraft) -> tuple[MissionEnd, str] | None:
-        """With nothing in the buffer: look behind and in between before giving up."""
+    async def _look_elsewhere(self, step: StepDraft) -> tuple[MissionEnd, str] | None:
+        """With nothing in the buffer: look in other headings, here or at the nearest path point that has some left."""
         if step.faults:
             return None  # nothing was seen; the next step looks again
-        tried = self._looks_around.get(self._point, 0)
         turns = self.settings.other_turns_rad()
-        if tried >= len(turns):
-            return MissionEnd.NOTHING_LEFT, "every frontier is visited, blocked or given up"
-        self._looks_around[self._point] = tried + 1
-        self._turn_rad = turns[tried]
-        step.notes.append("nothing left in the buffer: looking elsewhere")
-        return None
+        left = [point for point in self.graph.by_distance(self._point) if self._looks_around.get(point, 0) < len(turns)]
+        for point in left:
+            tried = self._looks_around.get(point, 0)
+            self._looks_around[point] = tried + 1
+            step.notes.append(f"nothing left in the buffer: looking elsewhere from path point {point}")
+            if not await self._go_back(step, point):
+                return None
+            self._look_heading_rad = self.graph.points[point].heading_rad + turns[tried]
+            return None
+        return MissionEnd.NOTHING_LEFT, "every frontier is visited, blocked or given up"
+
+    async def _go_back(self, step: StepDraft, point: int) -> bool:
+        """Travel along known edges to an earlier path point; return whether it was reached."""
+        for target in _facing_onwards(self.graph.way(self._point, point)):
+            if not await self._leg(step, None, target):
+                return False
+            self._point = self.graph.add_point(self.parts.vehicle.pose, previous=self._point)
+        return True
 
     async def _travel(self, step: StepDraft, choice: Choice) -> None:
         frontier = choice.frontier
         self.graph.take(frontier)
         step.touched[frontier.id] = frontier
         route = self.graph.route(self._point, frontier)
-        self._turn_rad = 0.0
+        self._look_heading_rad = None
         for target in _facing_onwards(route):
             if not await self._leg(step, frontier, target):
                 break
             self._point = self.graph.add_point(self.parts.vehicle.pose, previous=self._point)
 
-    async def _leg(self, step: StepDraft, frontier: Frontier, target: Pose) -> bool:
-        """Travel one leg; return whether it arrived. A leg that does not is given up with its reason."""
+    async def _leg(self, step: StepDraft, frontier: Frontier | None, target: Pose) -> bool:
+        """Travel one leg; return whether it arrived. If not, the frontier that it led to is given up with its reason."""
         started_s = self.parts.clock.now_s()
         try:
             leg = await self.parts.vehicle.go_to(target)
         except PartError as fault:
             self._note_fault(step, fault)
-            self.graph.give_up(frontier, str(fault))
+            if frontier is not None:
+                self.graph.give_up(frontier, str(fault))
             return False
         finally:
             step.travel_s += self.parts.clock.now_s() - started_s
@@ -328,8 +340,9 @@ class Explorer:
         if leg.outcome is LegOutcome.ARRIVED:
             return True
         reason = f"{leg.outcome.value}: {leg.detail}" if leg.detail else leg.outcome.value
-        self.graph.give_up(frontier, reason)
-        step.notes.append(f"frontier {frontier.id} given up: {reason}")
+        if frontier is not None:
+            self.graph.give_up(frontier, reason)
+            step.notes.append(f"frontier {frontier.id} given up: {reason}")
         self._look_next = leg.length_m >= _NOWHERE_M
         if self._look_next:
             self._point = self.graph.add_point(self.parts.vehicle.pose, previous=self._point)

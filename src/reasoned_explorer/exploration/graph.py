@@ -149,10 +149,23 @@ class TopologicalGraph:
 
         Between path points that are not joined (which does not happen on one machine's way) the route is straight.
         """
-        points = self._shortest_way(start, frontier.parent)
-        return [self.points[index] for index in points[1:]] + [frontier.pose]
+        return [*self.way(start, frontier.parent), frontier.pose]
 
-    def _shortest_way(self, start: int, goal: int) -> list[int]:
+    def way(self, start: int, goal: int) -> list[Pose]:
+        """Return the path points on the shortest known way to another one, the start left out."""
+        came_from, _ = self._search(start, goal)
+        way = [goal]
+        while way[-1] in came_from:
+            way.append(came_from[way[-1]])
+        return [self.points[index] for index in way[::-1] if index != start]
+
+    def by_distance(self, start: int) -> list[int]:
+        """Return all path points that can be reached along known edges, nearest first, the start itself included."""
+        _, length_m = self._search(start, None)
+        return sorted(length_m, key=lambda point: (round(length_m[point], 3), point))
+
+    def _search(self, start: int, goal: int | None) -> tuple[dict[int, int], dict[int, float]]:
+        """Dijkstra's search: return where each path point is come to from, and how far it is, metres."""
         queue = [(0.0, start)]
         length_m = {start: 0.0}
         came_from: dict[int, int] = {}
@@ -167,7 +180,4 @@ class TopologicalGraph:
                 if longer_m < length_m.get(other, math.inf):
                     length_m[other], came_from[other] = longer_m, point
                     heapq.heappush(queue, (longer_m, other))
-        way = [goal]
-        while way[-1] in came_from:
-            way.append(came_from[way[-1]])
-        return way[::-1]
+        return came_from, length_m

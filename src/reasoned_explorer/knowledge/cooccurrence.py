@@ -28,8 +28,8 @@ class Cooccurrence:
         sources: Where it was counted: name of the file, number of objects, area in km², day of the newest edit.
         radius_m: What "near" means.
         ahead_m: From where to where "a bit further on" reaches.
-        density_per_km2: Objects of a class per km² of outdoor land.
-        ground_share: Share of a kind of ground in all that is not built on; they sum to 1.
+        density_per_km2: Objects of a class per km² of open ground: all that is not built on, water included.
+        ground_share: Share of a kind of ground in the open ground; they sum to 1.
         same_class_spacing_m: Median distance to the next object of the same class.
         distance_to: For a class, the median distance to the next ``building``, ``road`` and ``footway``.
     """

@@ -93,14 +93,15 @@ _PROFILES = {
     profile.name: profile
     for profile in (
         LatencyProfile("instant", "answers take no time"),
-        # Fitted to one published figure: the authors' log of N = 3, L = 1 shows 9 to 13.5 s of planning a step. Taken as
-        # the 10-90 % band of the slowest of nine visionary calls plus the slowest of nine evaluator calls, one sigma for
-        # both, it fixes the sum of the medians and sigma; how the sum is split (1 : 1.25) is assumed: GPT-4 answered
-        # more slowly than GPT-3.5, but with fewer words. A checker's question is like an evaluator's. The captioner
-        # is not in that log; its time is assumed.
+        # Fitted to one published figure: the authors' log of N = 3, L = 1 shows 9 to 13.5 s of planning a step. Taken
+        # as the 10-90 % band of the slowest of nine visionary calls plus the slowest of nine evaluator calls, one
+        # sigma for both, it fixes the sum of the medians and sigma; how the sum is split (1 : 1.25) is assumed: GPT-4
+        # answered more slowly than GPT-3.5, but with fewer words. A checker's question is like an evaluator's. The
+        # captioner is not in that log; its time is assumed.
         LatencyProfile(
             "gpt-2023",
-            "GPT-3.5 visionary and GPT-4 evaluator of 2023, fitted to the authors' log; captions (Kosmos-2 on a GPU) and"
+            "GPT-3.5 visionary and GPT-4 evaluator of 2023, fitted to the authors' log; captions (Kosmos-2 on a GPU) "
+            "and"
             " the split between roles assumed",
             caption=RoleLatency(1.2, 0.15),
             visionary=RoleLatency(2.85, 0.36),

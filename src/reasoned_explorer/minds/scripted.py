@@ -103,7 +103,9 @@ class ScriptedMinds:
             PartError: If the script says so.
             SettingsError: If the script answers something that is no assessment.
         """
-        answers = await self._ask("evaluator", self._scripts.evaluator, goal, scenes, self._scripts.default_score)
+        answers = await self._ask(
+            "evaluator", self._scripts.evaluator, goal, scenes, default=self._scripts.default_score
+        )
         return tuple(self._assessment(answer) for answer in answers)
 
     async def imagine(self, goal: Goal, scenes: Sequence[Scene], *, count: int) -> Sequence[Sequence[Scene]]:
@@ -113,7 +115,9 @@ class ScriptedMinds:
             PartError: If the script says so.
             SettingsError: If the script answers something that is no text.
         """
-        answers = await self._ask("visionary", self._scripts.visionary, goal, scenes, self._scripts.default_text, count)
+        answers = await self._ask(
+            "visionary", self._scripts.visionary, goal, scenes, default=self._scripts.default_text, times=count
+        )
         return tuple(
             tuple(self._child(scene, child, answer) for child in range(count))
             for scene, answer in zip(scenes, answers, strict=True)
@@ -126,11 +130,11 @@ class ScriptedMinds:
             PartError: If the script says so.
             SettingsError: If the script answers something that is no verdict.
         """
-        answers = await self._ask("checker", self._scripts.checker, goal, scenes, self._scripts.default_found)
+        answers = await self._ask("checker", self._scripts.checker, goal, scenes, default=self._scripts.default_found)
         return tuple(self._verdict(answer) for answer in answers)
 
     async def _ask(
-        self, role: str, script: Script, goal: Goal, scenes: Sequence[Scene], default: Any, times: int = 1
+        self, role: str, script: Script, goal: Goal, scenes: Sequence[Scene], *, default: Any, times: int = 1
     ) -> list[Any]:
         context = self._context
         answers, slowest_s = [], 0.0

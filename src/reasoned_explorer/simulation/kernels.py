@@ -122,7 +122,7 @@ RECOIL_MPS, RECOIL_S = 0.2, 0.6
 #: It stops this far before what it would touch.
 STANDOFF_M = 0.005
 #: A point of the track is kept after so many metres, or after so many seconds in which it moved or turned a little.
-TRACK_M, TRACK_S, TRACK_LEAST_M, TRACK_LEAST_RAD = 1.0, 0.5, 0.25, 0.1
+TRACK_M, TRACK_S, TRACK_LEAST_M, TRACK_LEAST_RAD = 1.0, 0.5, 0.5, 0.1
 
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _PART = np.uint64(0xD1342543DE82EF95)

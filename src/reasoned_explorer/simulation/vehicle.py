@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 _WALKER_Z_M = 0.3
 #: Obstacles are gathered this far around a leg, metres, and further where the receiver errs by metres.
 _MARGIN_M = 5.0
+#: The last heading must be so much nearer than the first for a look around to begin there, radians.
+_CLEARLY_NEARER_RAD = 0.2
 #: Undersides higher than this can be gone under, metres (as in `world.raster`).
 _ROOF_CLEARANCE_M = 2.0
 
@@ -265,7 +267,7 @@ class SimulatedVehicle(Vehicle):
         facing_rad = self._body.pose.heading_rad
         to_first = abs(bearing_between_rad(facing_rad, headings_rad[0]))
         to_last = abs(bearing_between_rad(facing_rad, headings_rad[-1]))
-        return order[::-1] if to_last < to_first - 1e-6 else order
+        return order[::-1] if to_last < to_first - _CLEARLY_NEARER_RAD else order
 
     def _at_height(self, pose: Pose) -> Pose:
         return Pose(pose.x_m, pose.y_m, self.profile.camera_height_m, pose.heading_rad)

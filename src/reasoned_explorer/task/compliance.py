@@ -1,26 +1,26 @@
 """Whether a track keeps to the ground that a level-3 goal asks for.
 
-The rule: forbidden ground within 2 m of other ground is tolerated. What goes deeper counts with the border that it
+The rule: forbidden ground within 2 m of other ground is tolerated (to the metre: the cells are those of the shortest
+ways, so that the shortest compliant way complies). What goes deeper counts with the border that it
 crosses on its way in and out (2 m each, less where there is less); more than 5 m in one such stretch is a violation.
 So walking along the edge never counts, a corner cut by a step does not, crossing a road of more than 5 m does. Unknown
-ground is never forbidden.
+ground is never forbidden, and neither is what lies beyond the world.
 
 A mission that starts on forbidden ground may leave it: of its first stretch as many metres are excused as twice the
 straight distance to the nearest other ground, and 2 m.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reasoned_explorer.world.freespace import SHUNNED_TOLERANCE_M
 from reasoned_explorer.world.taxonomy import Ground
 
-#: Forbidden ground this near to other ground is tolerated, metres.
-TOLERANCE_M = 2.0
 #: More than this in one stretch is a violation, metres.
 STRETCH_M = 5.0
 _STEP_M = 0.25
@@ -55,7 +55,11 @@ class ComplianceReport:
 
 
 def compliance_of(
-    points: Sequence[tuple[float, float]], ground: GroundCodes, forbidden: frozenset[Ground]
+    points: Sequence[tuple[float, float]],
+    ground: GroundCodes,
+    forbidden: frozenset[Ground],
+    *,
+    tolerated: Callable[[Floats, Floats], Flags],
 ) -> ComplianceReport:
     """Return whether a track complied.
 
@@ -63,6 +67,7 @@ def compliance_of(
         points: ENU metres, oldest first; straight in between.
         ground: Of the world.
         forbidden: Ground to keep off (`GoalSpec.forbidden`).
+        tolerated: Says of points, east and north, whether they are within the tolerance of ground that is not forbidden.
     """
     if not forbidden or not points:
         return ComplianceReport(compliant=True)
@@ -73,13 +78,9 @@ def compliance_of(
     if not on.any():
         return ComplianceReport(compliant=True)
     deep = on.copy()
-    inner = places[on]
-    near_edge = np.zeros(len(inner), dtype=np.bool_)
-    for dx, dy in _disc(TOLERANCE_M):
-        near_edge |= ~codes[ground.at_many(inner[:, 0] + dx, inner[:, 1] + dy)]
-    deep[on] = ~near_edge
+    deep[on] = ~tolerated(places[on, 0], places[on, 1])
     steps = np.diff(along, prepend=along[0])
-    excused_m = 2.0 * _way_off_m(places[0], ground, codes) + TOLERANCE_M if on[0] else 0.0
+    excused_m = 2.0 * _way_off_m(places[0], ground, codes) + SHUNNED_TOLERANCE_M if on[0] else 0.0
     longest_m, violation_at_m = 0.0, math.inf
     for first, last in _runs(on):
         for start_m, end_m in _counted(along, deep, first, last):
@@ -110,17 +111,12 @@ def _counted(along: Floats, deep: Flags, first: int, last: int) -> list[tuple[fl
     """Return the stretches of one run that count: deep parts with their borders, joined where these meet."""
     found: list[tuple[float, float]] = []
     for a, b in _runs(deep[first : last + 1]):
-        start_m = max(float(along[first]), float(along[first + a]) - TOLERANCE_M)
-        end_m = min(float(along[last]), float(along[first + b]) + TOLERANCE_M)
+        start_m = max(float(along[first]), float(along[first + a]) - SHUNNED_TOLERANCE_M)
+        end_m = min(float(along[last]), float(along[first + b]) + SHUNNED_TOLERANCE_M)
         if found and start_m <= found[-1][1]:
             start_m = found.pop()[0]
         found.append((start_m, end_m))
     return found
-
-
-def _disc(radius_m: float) -> list[tuple[float, float]]:
-    ticks = np.arange(-radius_m, radius_m + 1e-9, 0.5)
-    return [(float(x), float(y)) for x in ticks for y in ticks if x * x + y * y <= radius_m * radius_m + 1e-9]
 
 
 def _way_off_m(place: Floats, ground: GroundCodes, codes: Flags) -> float:

@@ -21,6 +21,8 @@ from reasoned_explorer.world.geodesic import Traveller
 #: Success is reported at these radii, metres; the main one is 15 (others of the field: 20 m in UAV-ON).
 RADII_M = (5.0, 10.0, 15.0, 20.0)
 _TRACK_STEP_M = 1.0
+# Stopped by nothing but what the goal forbids.
+_GHOST = Traveller(flies=True, radius_m=0.0, collides=False)
 # A first search for the reference way goes this far, each next one three times as far.
 _FIRST_REACH_M = 120.0
 
@@ -178,7 +180,7 @@ class Judge:
         bad = np.flatnonzero(~np.isfinite(flat).all(axis=1))
         if bad.size:
             raise InputError("track", [Fault(f"point {i} is {points[i]}", "finite metres") for i in bad[:10]])
-        compliance = compliance_of(points, self.atlas.ground, self.spec.forbidden)
+        compliance = compliance_of(points, self.atlas.ground, self.spec.forbidden, tolerated=self._is_tolerated)
         steps = np.hypot(*np.diff(flat, axis=0).T) if len(flat) > 1 else np.empty(0)
         at = np.concatenate(([0.0], np.cumsum(steps)))
         ticks = np.unique(np.concatenate((at, np.arange(0.0, at[-1], _TRACK_STEP_M))))
@@ -225,6 +227,17 @@ class Judge:
         out = ways.path((x_m, y_m), (from_x_m, from_y_m), traveller=self.traveller)
         return way if out is None else np.concatenate((out[:-1], way))
 
+    def success_mask(self) -> NDArray[np.bool_]:
+        """Return the cells of the atlas's geodesic grid at whose centre a declaration succeeds, shape (rows, cols)."""
+        grid = self.atlas.geodesics.grid
+        mask = np.zeros(grid.rows * grid.cols, dtype=np.bool_)
+        cells = [self._cells_near(place) for place in range(len(self.targets))]
+        for cell in np.unique(np.concatenate(cells)) if cells else ():
+            row, col = divmod(int(cell), grid.cols)
+            x_m, y_m = grid.min_x_m + (col + 0.5) * grid.cell_m, grid.min_y_m + (row + 0.5) * grid.cell_m
+            mask[cell] = self.success(x_m, y_m).success
+        return mask.reshape(grid.rows, grid.cols)
+
     def blind_success_rate(self, places: Iterable[tuple[float, float]]) -> float:
         """Return the share of places at which a declaration would succeed, in [0, 1]; 0 where there are no places."""
         answers = [self.success(x_m, y_m).success for x_m, y_m in places]
@@ -237,6 +250,14 @@ class Judge:
     @cached_property
     def _slack_m(self) -> float:
         return max((target.slack_m for target in self.targets), default=0.0)
+
+    def _is_tolerated(self, xs_m: NDArray[np.float64], ys_m: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return which points the ground alone would let a compliant way pass through."""
+        space = self.atlas.geodesics.space(_GHOST, shunned=self.spec.forbidden)
+        grid = space.grid
+        cols = np.clip((xs_m - grid.min_x_m) / grid.cell_m, 0, grid.cols - 1).astype(np.int64)
+        rows = np.clip((ys_m - grid.min_y_m) / grid.cell_m, 0, grid.rows - 1).astype(np.int64)
+        return np.asarray(space.free[rows, cols])
 
     def _near_a_target(self, xs_m: NDArray[np.float64], ys_m: NDArray[np.float64]) -> list[int]:
         """Return which points are within the success radius of something that passes, rising; sight is not asked."""

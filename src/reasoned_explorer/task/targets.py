@@ -50,8 +50,8 @@ class Target:
     why: str = ""
 
     def distance_m(self, x_m: float, y_m: float) -> float:
-        """Return the distance from a point to where it satisfies, metres."""
-        return max(0.0, float(shapely.distance(self.shape, shapely.Point(x_m, y_m))) - self.slack_m)
+        """Return the distance from a point to where it satisfies, metres, to the micrometre."""
+        return max(0.0, round(float(shapely.distance(self.shape, shapely.Point(x_m, y_m))) - self.slack_m, 6))
 
 
 class Grader:

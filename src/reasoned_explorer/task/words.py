@@ -402,11 +402,13 @@ SMALL_WORDS = (
     | PLACEHOLDERS
     | _words(
         "me us i we it you he she they am is are be been to for please can could would should will let lets there here "
-        "and or but then while as so which who whose when how with at by from into onto do does did has have had having "
+        "and or but then while as so which who whose when how with at by from into onto do does did has have had "
+        "having "
         "need want wants like hello hi hey thanks thank robot now also too just only really very bit little nice good "
-        "great way our their them on in near nearby up out about if possible possibly must may not no someone's one's "
-        "again right directly straight i'm i'd i've we're it's that's what what's tells next close around vicinity along "
-        "standing located situated placed parked kind sort type"
+        "great way our their them on in near nearby up out about if possible possibly must may not no "
+        "someone's one's "
+        "again right directly straight i'm i'd i've we're it's that's what what's tells next close around "
+        "vicinity along standing located situated placed parked kind sort type"
     )
 )
 #: Words after a relation that change it in ways that the judge does not know.

@@ -176,15 +176,20 @@ def set_in(face: str, text: str) -> tuple[str, str]:
     return last, "".join(character if _has_glyph(last, character) else _MISSING for character in text)
 
 
-@lru_cache(maxsize=8192)
 def width_pt(text: str, face: str, size_pt: float) -> float:
-    """Return how wide a line of text is, points."""
+    """Return how wide a line of text is, points; the sum of its letters, so that kerning only makes it narrower."""
     face, text = set_in(face, text)
-    if not text.strip():
-        return 0.0
-    # Outlines' control points stand in for their true extent: as good as that for letters, and 20 times faster.
-    vertices = np.asarray(TextPath((0.0, 0.0), text, size=100.0, prop=font(face)).vertices)
-    return float(vertices[:, 0].max()) * size_pt / 100.0 if len(vertices) else 0.0
+    return sum(_advance(face, character) for character in text) * size_pt
+
+
+@lru_cache(maxsize=8192)
+def _advance(face: str, character: str) -> float:
+    """Return how far a letter moves the pen at a size of 1: how far it pushes a bar that follows it."""
+    pushed, alone = (
+        float(np.asarray(TextPath((0.0, 0.0), text, size=100.0, prop=font(face)).vertices)[:, 0].max())
+        for text in (character + "|", "|")
+    )
+    return max(pushed - alone, 0.0) / 100.0
 
 
 def wrapped(text: str, face: str, size_pt: float, room_pt: float, max_lines: int) -> list[str]:

@@ -87,13 +87,17 @@ class Grid:
         near = np.clip(cells, 1e-4, np.asarray(far) - 1e-4)
         return np.where(np.abs(cells - near) <= 2e-4, near, cells)
 
+    def holds(self, x: float, y: float) -> bool:
+        """Return whether a point that is given in cells lies in the grid."""
+        return 0.0 <= x < self.cols and 0.0 <= y < self.rows
+
     def points_of(self, cells: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return points that are given in cells, shape (n, 2), in ENU metres."""
         return cells * self.cell_m + (self.min_x_m, self.min_y_m)
 
     def centres_of(self, mask: NDArray[np.bool_]) -> NDArray[np.float64]:
         """Return the centres of the cells that a mask of this grid's shape picks, shape (n, 2), ENU metres."""
-        return self.points_of(np.argwhere(mask)[:, ::-1] + 0.5)
+        return self.points_of(np.argwhere(mask)[:, ::-1].astype(np.float64) + 0.5)
 
     def disc(self, x_m: float, y_m: float, radius_m: float) -> NDArray[np.int64]:
         """Return the flat indices of the cells whose centre is within a radius of a point, rising."""
@@ -188,7 +192,9 @@ class FreeSpaceMaker:
             table = np.asarray(rectangles, dtype=np.float64)
             table[:, :2] -= (self.grid.min_x_m, self.grid.min_y_m)
             table[:, (0, 1, 4, 5)] /= self.grid.cell_m
-            trunks = np.asarray([o.object_class.kind == "plant" and o.class_name == "tree" for o in solids if not _has_outline(o)])
+            trunks = np.asarray(
+                [o.object_class.kind == "plant" and o.class_name == "tree" for o in solids if not _has_outline(o)]
+            )
             block_rectangles(blocked, table[~trunks], radius_m / self.grid.cell_m)
             block_rectangles(blocked, table[trunks], (radius_m + TRUNK_RADIUS_M) / self.grid.cell_m)
 

@@ -148,7 +148,7 @@ def label_stretches(clearance: Codes) -> tuple[Labels, NDArray[np.int64]]:
                 parents[used] = used
                 labels[r, c] = used
                 used += 1
-            elif left == 0 or below == 0 or left == below:
+            elif left == 0 or below in (0, left):
                 labels[r, c] = max(left, below)
             else:
                 a, b = _root(parents, left), _root(parents, below)
@@ -174,9 +174,7 @@ def label_stretches(clearance: Codes) -> tuple[Labels, NDArray[np.int64]]:
 
 
 @njit(cache=True)
-def free_near(
-    clearance: Codes, labels: Labels, x: float, y: float, reach: float
-) -> tuple[NDArray[np.int64], Floats]:
+def free_near(clearance: Codes, labels: Labels, x: float, y: float, reach: float) -> tuple[NDArray[np.int64], Floats]:
     """Return the free cells that a point can be moved to: the nearest of each connected stretch, nearest first.
 
     Args:

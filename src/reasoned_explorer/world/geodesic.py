@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from reasoned_explorer.geometry.angles import heading_towards_rad
 from reasoned_explorer.model import Fault, InputError
 from reasoned_explorer.world.freespace import SNAP_M, FreeSpace, FreeSpaceMaker, Grid, Traveller
-from reasoned_explorer.world.geodesic_kernels import lengths_at, search, tighten, trace
+from reasoned_explorer.world.geodesic_kernels import lengths_at, search, tighten, trace, visible
 from reasoned_explorer.world.raster import GroundRaster
 from reasoned_explorer.world.taxonomy import Ground
 from reasoned_explorer.world.world import World
@@ -198,7 +198,7 @@ class Geodesics:
         for cell, _ in space.places_near(start[0], start[1]):
             ends = wanted.places(space, int(space.stretches.flat[cell]))
             if ends.cells.size:
-                return wanted.cut(self._way(space, start, cell, ends))
+                return self._aim(space, wanted.cut(self._way(space, start, cell, ends)), wanted.discs)
         return None
 
     def field_m(
@@ -250,10 +250,25 @@ class Geodesics:
         places = space.places_near(*_points([(x_m, y_m)], "point", 2)[0])
         return int(space.stretches.flat[places[0][0]]) if places else 0
 
+    def _aim(self, space: FreeSpace, way: FloatArray, discs: FloatArray) -> FloatArray:
+        """Return a way whose last leg goes straight for the nearest rim of a disc, where that is shorter and free."""
+        if not len(discs):
+            return way
+        away = discs[:, :2] - way[-2]
+        rims = np.hypot(away[:, 0], away[:, 1]) - discs[:, 2]
+        best = int(np.argmin(rims))
+        if not 0.0 < rims[best] < math.dist(way[-2], way[-1]):
+            return way
+        rim = way[-2] + away[best] * (rims[best] / (rims[best] + discs[best, 2]))
+        (x0, y0), (x1, y1) = self.grid.cells_of(np.stack((way[-2], rim)))
+        if not self.grid.holds(x0, y0) or not self.grid.holds(x1, y1) or not visible(space.clearance, x0, y0, x1, y1):
+            return way
+        return np.concatenate((way[:-1], rim[None]))
+
     def _way(self, space: FreeSpace, start: FloatArray, cell: int, ends: "_Ends") -> FloatArray:
         grid, cols = self.grid, self.grid.cols
         begin = grid.cells_of(start[None])[0]
-        stays = int(begin[1]) * cols + int(begin[0]) == cell and 0.0 <= begin[0] < cols and begin[1] >= 0.0
+        stays = grid.holds(*begin) and int(begin[1]) * cols + int(begin[0]) == cell
         first = begin if stays else np.asarray([cell % cols + 0.5, cell // cols + 0.5])
         sources = np.asarray([[first[0], first[1], 0.0]])
         at = ends.sources

@@ -22,6 +22,8 @@ Links = NDArray[np.int32]
 Cells = NDArray[np.int64]
 
 _TINY = 1e-6
+# Ways that are shorter by less are not told apart: lengths are kept in single precision.
+_GAIN = 1e-3
 _BUCKETS = 2048
 _BUCKET_WIDTH = 0.25
 # States of a cell; a goal cell has _GOAL added.
@@ -83,8 +85,8 @@ def _length_at(link: int, lengths: Lengths, sources: Floats) -> float:
 @njit(cache=True)
 def _rest(box: Floats, x: float, y: float) -> float:
     """Return a lower bound of what is left to go: the distance to the box around all goals."""
-    dx = max(0.0, max(box[0] - x, x - box[2]))
-    dy = max(0.0, max(box[1] - y, y - box[3]))
+    dx = max(0.0, box[0] - x, x - box[2])
+    dy = max(0.0, box[1] - y, y - box[3])
     return math.sqrt(dx * dx + dy * dy)
 
 
@@ -165,24 +167,6 @@ def _best_link(
 
 
 @njit(cache=True)
-def _relax(
-    clearance: Codes, lengths: Lengths, states: Codes, corner: tuple[float, float, float], cell: int, k: int
-) -> float:
-    """Return the length of a neighbour's way through a cell's corner, or infinity if it does not shorten it."""
-    cols = clearance.shape[1]
-    row, col = cell // cols, cell % cols
-    other = (row + _DY[k]) * cols + col + _DX[k]
-    state = states[other] & 3
-    if state == _DONE:
-        return math.inf
-    dx, dy = col + _DX[k] + 0.5 - corner[0], row + _DY[k] + 0.5 - corner[1]
-    length = corner[2] + math.sqrt(dx * dx + dy * dy)
-    if state != 0 and length > lengths[other] - 1e-4:
-        return math.inf
-    return length
-
-
-@njit(cache=True)
 def search(
     clearance: Codes,
     lengths: Lengths,
@@ -208,7 +192,7 @@ def search(
     Returns:
         The goal cell that was reached, or −1; and all cells that were touched.
     """
-    cols = clearance.shape[1]
+    rows, cols = clearance.shape
     heads = np.full(_BUCKETS, -1, np.int32)
     nexts, items = np.arange(1, 4097).astype(np.int32), np.empty(4096, np.int32)
     marks = np.zeros(4, np.int64)
@@ -251,22 +235,29 @@ def search(
             states[cell] |= _DONE
             return cell, touched[: marks[3]]
         states[cell] = (states[cell] & _GOAL) | _DONE
-        corner = (cx, cy, _length_at(links[cell], lengths, sources))
+        link, so_far = links[cell], _length_at(links[cell], lengths, sources)
         if touched.size < marks[3] + 8:
             touched = np.append(touched, np.empty(touched.size, np.int32))
+        # Where nothing is near, the neighbours need no look.
+        roomy = clearance[row, col] > 1 and 0 < row < rows - 1 and 0 < col < cols - 1
         for k in range(8):
-            if not _open_way(clearance, row, col, k):
+            if not roomy and not _open_way(clearance, row, col, k):
                 continue
-            length = _relax(clearance, lengths, states, corner, cell, k)
-            if length > limit or length == math.inf:
+            other = cell + _DY[k] * cols + _DX[k]
+            state = states[other]
+            if state & 3 == _DONE:
                 continue
-            other = (row + _DY[k]) * cols + col + _DX[k]
-            if links[other] == 0:
+            other_x, other_y = x + _DX[k], y + _DY[k]
+            dx, dy = other_x - cx, other_y - cy
+            length = so_far + math.sqrt(dx * dx + dy * dy)
+            if length > limit or (state & 3 != 0 and length > lengths[other] - _GAIN):
+                continue
+            if state & 3 == 0:
                 touched[marks[3]] = other
                 marks[3] += 1
-            lengths[other], links[other] = length, links[cell]
-            states[other] = (states[other] & _GOAL) | _WAITING
-            key = length + (_rest(box, col + _DX[k] + 0.5, row + _DY[k] + 0.5) if guided else 0.0)
+            lengths[other], links[other] = length, link
+            states[other] = (state & _GOAL) | _WAITING
+            key = length + (_rest(box, other_x, other_y) if guided else 0.0)
             _push(heads, nexts, items, marks, other, key)
     return -1, touched[: marks[3]]
 
@@ -296,7 +287,9 @@ def _pull(clearance: Codes, points: Floats) -> Floats:
     count, at = 1, 0
     while at < points.shape[0] - 1:
         ahead = min(at + 8, points.shape[0] - 1)
-        while ahead > at + 1 and not visible(clearance, points[at, 0], points[at, 1], points[ahead, 0], points[ahead, 1]):
+        while ahead > at + 1 and not visible(
+            clearance, points[at, 0], points[at, 1], points[ahead, 0], points[ahead, 1]
+        ):
             ahead -= 1
         at = ahead
         kept[count] = at
@@ -309,9 +302,7 @@ def _shift(clearance: Codes, before: Floats, corner: Floats, after: Floats) -> b
     """Move a corner to where the way around it is shorter, among places in its cell and the eight around it."""
     rows, cols = clearance.shape
     row, col = int(corner[1]), int(corner[0])
-    best = np.hypot(corner[0] - before[0], corner[1] - before[1]) + np.hypot(
-        after[0] - corner[0], after[1] - corner[1]
-    )
+    best = np.hypot(corner[0] - before[0], corner[1] - before[1]) + np.hypot(after[0] - corner[0], after[1] - corner[1])
     moved = False
     for r in range(max(0, row - 1), min(rows, row + 2)):
         for c in range(max(0, col - 1), min(cols, col + 2)):
@@ -405,8 +396,8 @@ def lengths_at(
             corners[i, 0], corners[i, 1] = cx, cy
             continue
         nearest = reach
-        for r in range(max(0, int(math.floor(y - reach))), min(rows, int(math.floor(y + reach)) + 1)):
-            for c in range(max(0, int(math.floor(x - reach))), min(cols, int(math.floor(x + reach)) + 1)):
+        for r in range(max(0, math.floor(y - reach)), min(rows, math.floor(y + reach) + 1)):
+            for c in range(max(0, math.floor(x - reach)), min(cols, math.floor(x + reach) + 1)):
                 distance = math.hypot(c + 0.5 - x, r + 0.5 - y)
                 if links[r * cols + c] != 0 and distance < nearest:
                     nearest = distance

@@ -38,9 +38,9 @@ class ObjectIndex:
 
     def __init__(self, world: World) -> None:
         objects = world.objects
-        columns = np.asarray(
-            [(o.x_m, o.y_m, o.heading_rad, *o.size_m) for o in objects], dtype=np.float64
-        ).reshape(-1, 6)
+        columns = np.asarray([(o.x_m, o.y_m, o.heading_rad, *o.size_m) for o in objects], dtype=np.float64).reshape(
+            -1, 6
+        )
         self.x_m, self.y_m, self.heading_rad, self.length_m, self.width_m, self.height_m = columns.T.copy()
         self.class_code: Ids = np.asarray([_CODE_OF[o.class_name] for o in objects], dtype=np.int64)
         self._spans, self._outlines = _outlines_of(objects)
@@ -63,9 +63,7 @@ class ObjectIndex:
     def __len__(self) -> int:
         return self.x_m.size
 
-    def within(
-        self, x_m: float, y_m: float, radius_m: float, *, class_names: Iterable[str] | None = None
-    ) -> Ids:
+    def within(self, x_m: float, y_m: float, radius_m: float, *, class_names: Iterable[str] | None = None) -> Ids:
         """Return the ids of the objects whose footprint is within a radius of a point.
 
         Args:
@@ -127,7 +125,9 @@ class ObjectIndex:
 
     def _search(self, x_m: float, y_m: float, radius_m: float, mask: NDArray[np.bool_]) -> Ids:
         if not (math.isfinite(x_m) and math.isfinite(y_m) and radius_m >= 0.0):
-            faults = [Fault(f"{n} = {v}", "a finite number") for n, v in (("x_m", x_m), ("y_m", y_m)) if not math.isfinite(v)]
+            faults = [
+                Fault(f"{n} = {v}", "a finite number") for n, v in (("x_m", x_m), ("y_m", y_m)) if not math.isfinite(v)
+            ]
             if not radius_m >= 0.0:
                 faults.append(Fault(f"a radius of {radius_m} m", "0 or more"))
             raise InputError("object index", faults)

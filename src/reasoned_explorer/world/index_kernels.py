@@ -66,7 +66,8 @@ def footprint_distance(table: Floats, spans: Ints, outlines: Floats, item: int, 
 
 @njit(cache=True)
 def _bucket(position: float, origin: float, size: float, count: int) -> int:
-    return int(min(count - 1.0, max(0.0, math.floor((position - origin) / size))))
+    # Clipped before it becomes an integer: the position may be infinite.
+    return int(min(count - 1.0, max(0.0, (position - origin) / size)))
 
 
 @njit(cache=True)
@@ -104,8 +105,8 @@ def build_grid(table: Floats, rows: int, cols: int, frame: Floats) -> tuple[Ints
 
 @njit(cache=True)
 def _box_distance_squared(row: Floats, x: float, y: float) -> float:
-    dx = max(0.0, max(row[MIN_X] - x, x - row[MAX_X]))
-    dy = max(0.0, max(row[MIN_Y] - y, y - row[MAX_Y]))
+    dx = max(0.0, row[MIN_X] - x, x - row[MAX_X])
+    dy = max(0.0, row[MIN_Y] - y, y - row[MAX_Y])
     return dx * dx + dy * dy
 
 
@@ -163,7 +164,7 @@ def search_grid(
                     continue
                 distance = footprint_distance(table, spans, outlines, i, x, y)
                 if distance <= radius:
-                    keys[found] = int(math.floor(distance * 1000.0 + 0.5)) * KEY_UNIT + i
+                    keys[found] = math.floor(distance * 1000.0 + 0.5) * KEY_UNIT + i
                     found += 1
     keys = keys[:found]
     keys.sort()

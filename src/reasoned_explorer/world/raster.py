@@ -86,10 +86,13 @@ class GroundRaster:
             Values of `Ground`, the same shape; ``UNKNOWN`` outside the world's bounds.
         """
         xs, ys = np.asarray(xs_m, dtype=np.float64), np.asarray(ys_m, dtype=np.float64)
-        found = codes_at(self.codes, (xs.ravel() - self.min_x_m) / self.cell_m, (ys.ravel() - self.min_y_m) / self.cell_m)
+        found = codes_at(
+            self.codes, (xs.ravel() - self.min_x_m) / self.cell_m, (ys.ravel() - self.min_y_m) / self.cell_m
+        )
         beyond = (xs.ravel() > self.bounds.max_x_m) | (ys.ravel() > self.bounds.max_y_m)
         found[beyond] = Ground.UNKNOWN
-        return found.reshape(xs.shape)
+        shaped: NDArray[np.uint8] = found.reshape(xs.shape)
+        return shaped
 
     def share(self, ground: Ground) -> float:
         """Return the share of all cells that are this ground, in [0, 1]."""
@@ -131,7 +134,8 @@ class Canvas:
 
     def fill(self, polygons: Iterable[Sequence[Ring]], values: Sequence[int] | int) -> None:
         """Fill polygons in order, each given by its rings (even-odd), with one value or one value each."""
-        rings, polygon_ends = [], []
+        rings: list[Ring] = []
+        polygon_ends: list[int] = []
         for polygon in polygons:
             rings.extend(polygon)
             polygon_ends.append(len(rings))

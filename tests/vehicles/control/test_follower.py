@@ -1,4 +1,5 @@
 import math
+from itertools import pairwise
 
 import pytest
 from hypothesis import given, settings
@@ -60,7 +61,7 @@ def test_every_target_is_reached_and_faced_within_the_limits(name, distance_m, h
 def test_the_commanded_acceleration_keeps_the_limit(name):
     commands, _ = follow(name, Pose(0.0, 0.0), Pose(0.0, 6.0))
     speeds = [command.forward_mps for command in commands[:-1]]
-    steps = [abs(after - before) for before, after in zip(speeds, speeds[1:], strict=False)]
+    steps = [abs(after - before) for before, after in pairwise(speeds)]
     assert max(steps) <= PROFILES[name].acceleration_mps2 * DT_S + 1e-9
     assert max(speeds) == pytest.approx(PROFILES[name].speed_mps)
 
@@ -123,6 +124,10 @@ def test_not_a_number_is_refused():
 def test_bad_settings_are_all_named_at_once():
     with pytest.raises(SettingsError) as caught:
         FollowerSettings(
-            speed_mps=-1.0, acceleration_mps2=1.0, braking_mps2=2.0, turn_rate_radps=math.inf, turn_acceleration_radps2=1.0
+            speed_mps=-1.0,
+            acceleration_mps2=1.0,
+            braking_mps2=2.0,
+            turn_rate_radps=math.inf,
+            turn_acceleration_radps2=1.0,
         )
     assert len(caught.value.faults) == 3

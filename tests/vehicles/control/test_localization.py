@@ -11,12 +11,11 @@ from reasoned_explorer.vehicles.control import kernels
 from reasoned_explorer.vehicles.control.localization import FilterSettings, PoseFilter
 
 DT_S = 0.05
+ORIGIN = Pose(0.0, 0.0)
 
 
-def make(pose: Pose = Pose(0.0, 0.0), *, heading_sigma_rad: float = 0.05, **more: float) -> PoseFilter:
-    return PoseFilter(
-        FilterSettings(**more), pose, position_sigma_m=0.02, heading_sigma_rad=heading_sigma_rad
-    )
+def make(pose: Pose = ORIGIN, *, heading_sigma_rad: float = 0.05, **more: float) -> PoseFilter:
+    return PoseFilter(FilterSettings(**more), pose, position_sigma_m=0.02, heading_sigma_rad=heading_sigma_rad)
 
 
 def symmetric_and_positive(filter_: PoseFilter) -> bool:

@@ -11,7 +11,9 @@ SERVES = 0.8
 
 
 #: What only says how a place should be, where something else is wanted there: "to sit in the shade".
-QUALITIES = frozenset({"shade", "sun", "shelter", "quiet", "view", "light", "water_fun", "flowers_smell", "people", "sit"})
+QUALITIES = frozenset(
+    {"shade", "sun", "shelter", "quiet", "view", "light", "water_fun", "flowers_smell", "people", "sit"}
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +60,9 @@ def affordances_in(text: str) -> tuple[str, ...]:
     A shorter cue inside of a longer one does not count: "play soccer" is not "play".
     """
     pattern, owners = _cue_pattern()
-    cues = sorted({match.group() for match in pattern.finditer(text)}, key=lambda cue: (-len(cue.split()), text.find(cue)))
+    cues = sorted(
+        {match.group() for match in pattern.finditer(text)}, key=lambda cue: (-len(cue.split()), text.find(cue))
+    )
     names = list(dict.fromkeys(name for cue in cues for name in owners[cue]))
     # "Sit" is wanted for itself and, in "sit in the shade", the main thing; any other wish comes before it.
     main = next((name for name in names if name not in QUALITIES), "sit" if "sit" in names else "")

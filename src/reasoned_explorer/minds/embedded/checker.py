@@ -3,7 +3,7 @@
 from functools import lru_cache
 
 from reasoned_explorer.minds.embedded.affordances import SERVES
-from reasoned_explorer.minds.embedded.lexicon import ground_words
+from reasoned_explorer.minds.embedded.lexicon import ground_words, word_set
 from reasoned_explorer.minds.embedded.reading import BACKGROUND, FAR, MIDDLE, NEAR, Mention, SceneReading, read_scene
 from reasoned_explorer.minds.embedded.relevance import Relevance, Senses, relevance_of
 from reasoned_explorer.minds.embedded.support import conditions_support
@@ -16,8 +16,8 @@ FOUND_FROM = 0.5
 _WITHIN_REACH = {NEAR: 0.95, None: 0.65, MIDDLE: 0.3, FAR: 0.08, BACKGROUND: 0.04}
 _SIDES = {-1: "to the left", 0: "ahead", 1: "to the right"}
 _DISTANCES = {NEAR: "close by", MIDDLE: "further on", FAR: "in the distance", BACKGROUND: "in the background"}
-_COLOURS = frozenset("red green blue yellow white black brown grey gray orange purple pink silver golden".split())
-_MATERIALS = frozenset("wooden stone metal iron steel concrete brick glass plastic marble bronze".split())
+_COLOURS = word_set("colours")
+_MATERIALS = word_set("materials")
 
 
 def _adjectives_share(mention: Mention, relevance: Relevance) -> float:

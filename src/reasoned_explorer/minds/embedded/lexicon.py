@@ -44,6 +44,13 @@ def data_lines(name: str) -> list[str]:
     return [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
 
 
+@cache
+def word_set(name: str) -> frozenset[str]:
+    """Return a set of words of ``data/word_sets.txt``."""
+    sets = dict(line.split("|") for line in data_lines("word_sets"))
+    return frozenset(sets[name].split())
+
+
 _OVES = {"half": "halves", "shelf": "shelves", "bookshelf": "bookshelves"}
 
 

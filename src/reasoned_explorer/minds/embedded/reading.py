@@ -4,8 +4,10 @@ Text is data: a sentence that holds orders to a reader holds no things, and so s
 """
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
+from typing import Any
 
 from reasoned_explorer.minds.embedded.lexicon import concepts, plurals
 from reasoned_explorer.minds.embedded.wording import (
@@ -17,7 +19,6 @@ from reasoned_explorer.minds.embedded.wording import (
     NEAR,
     RIGHT,
     Meaning,
-    Part,
     caption_phrases,
 )
 
@@ -35,7 +36,8 @@ class Mention:
         side: `LEFT`, `AHEAD`, `RIGHT`, or None where nothing is said.
         negated: It is said not to be there.
         count: 1, 2 for two or some, 3 for many.
-        relations: Pairs of a relation (``near``, ``under``, ``over``, ``in_front``, ``behind``, ``on``, ``in``, ``has``,
+        relations: Pairs of a relation (``near``, ``under``, ``over``, ``in_front``, ``behind``, ``on``, ``in``,
+        ``has``,
             ``with``) and the concept, or the words, of the other thing.
     """
 
@@ -134,7 +136,9 @@ class _Reader:
         self._run: list[str] = []
         self._bare = False
         self._between: _Draft | None = None
-        self._handlers = (
+        self._tokens: list[str] = []
+        self._place_now, self._width = 0, 1
+        self._handlers: tuple[Callable[[Any], None], ...] = (
             self._thing, self._distance, self._side, self._place, self._negation, self._denial, self._relate,
             self._counted, self._verb, self._and, self._break, self._pronoun, self._block, self._other,
         )  # fmt: skip
@@ -143,6 +147,7 @@ class _Reader:
         table = caption_phrases()
         single, multi = table.single, table.multi
         place, total = 0, len(tokens)
+        self._tokens = tokens
         while place < total:
             token = tokens[place]
             found: tuple[int, Meaning] | None
@@ -155,15 +160,16 @@ class _Reader:
                 place += self._unknown(tokens, place)
                 continue
             count, (part, payload) = found
-            self._handlers[part](payload, tokens, place, count)  # type: ignore[operator]
+            self._place_now, self._width = place, count
+            self._handlers[part](payload)
             place += count
         self._end_run()
         self._settle()
 
-    # One handler for each kind of phrase; all get (payload, tokens, place, count).
+    # One handler for each kind of phrase.
 
-    def _thing(self, concept: str, tokens: list[str], place: int, count: int) -> None:
-        noun = " ".join(tokens[place : place + count])
+    def _thing(self, concept: str) -> None:
+        noun = " ".join(self._tokens[self._place_now : self._place_now + self._width])
         words = " ".join([*self._run, noun]) if self._run else noun
         many = self._count or (2 if noun in plurals() else 1)
         self._run = []
@@ -215,59 +221,60 @@ class _Reader:
             self._lead[cue] = value
         self._relation = None
 
-    def _distance(self, value: int, tokens: list[str], place: int, count: int) -> None:
+    def _distance(self, value: int) -> None:
         self._cue("distance", value)
 
-    def _side(self, value: int, tokens: list[str], place: int, count: int) -> None:
+    def _side(self, value: int) -> None:
         self._cue("side", value)
         self._clause_side = value
 
-    def _place(self, value: tuple[int, int], tokens: list[str], place: int, count: int) -> None:
+    def _place(self, value: tuple[int, int]) -> None:
         self._cue("distance", value[0])
         self._cue("side", value[1])
         self._clause_side = value[1]
 
-    def _negation(self, _: None, tokens: list[str], place: int, count: int) -> None:
+    def _negation(self, _: None) -> None:
         self._end_run()
         self._negating, self._negated_any = True, False
         self._count, self._relation = 0, None
 
-    def _denial(self, _: None, tokens: list[str], place: int, count: int) -> None:
+    def _denial(self, _: None) -> None:
         self._end_run()
         for draft in self.drafts[self._denied_from :]:
             draft.negated = True
 
-    def _relate(self, relation: str, tokens: list[str], place: int, count: int) -> None:
+    def _relate(self, relation: str) -> None:
         self._end_run()
         self._relation, self._after_break = relation, False
         self._bare = relation == "with"
 
-    def _counted(self, many: int, tokens: list[str], place: int, count: int) -> None:
+    def _counted(self, many: int) -> None:
         self._end_run()
-        if self._negating and self._negated_any and tokens[place - 1] not in {"or", "nor"}:
+        if self._negating and self._negated_any and self._tokens[self._place_now - 1] not in {"or", "nor"}:
             self._negating = False
         self._count = many
 
-    def _verb(self, _: None, tokens: list[str], place: int, count: int) -> None:
+    def _verb(self, _: None) -> None:
         self._end_run()
         self._verb_seen, self._after_break, self._count, self._bare = True, False, 0, True
         if self._negated_any:
             self._negating = False
 
-    def _and(self, _: None, tokens: list[str], place: int, count: int) -> None:
+    def _and(self, _: None) -> None:
         self._end_run()
-        if self._verb_seen and tokens[place] != "or" and not self._negating:
+        if self._verb_seen and self._tokens[self._place_now] != "or" and not self._negating:
             self._new_clause()
         self._after_break, self._count, self._bare = True, 0, True
 
-    def _break(self, _: None, tokens: list[str], place: int, count: int) -> None:
+    def _break(self, _: None) -> None:
         self._end_run()
-        if tokens[place] != "there":
+        word = self._tokens[self._place_now]
+        if word != "there":
             self._new_clause()
             self._lead["side"] = None
-            if tokens[place] == ";":
+            if word == ";":
                 self._lead["distance"] = None
-        if self._negated_any or tokens[place] != "there":
+        if self._negated_any or word != "there":
             self._negating = False
         self._after_break, self._count, self._bare = True, 0, True
 
@@ -289,7 +296,7 @@ class _Reader:
                 setattr(draft, cue, self._lead[cue])
             self._held[cue] = []
 
-    def _pronoun(self, _: None, tokens: list[str], place: int, count: int) -> None:
+    def _pronoun(self, _: None) -> None:
         self._end_run()
         relation, self._relation = self._relation, None
         if relation is None or self._before is None:
@@ -299,28 +306,29 @@ class _Reader:
         else:
             self._leading = (relation, self._before)  # "... and next to it a tree"
 
-    def _block(self, _: None, tokens: list[str], place: int, count: int) -> None:
+    def _block(self, _: None) -> None:
         self._end_run()
-        if self._negating or (place and tokens[place - 1] in {"not", "nothing", "never", "hardly"}):
+        before = self._tokens[self._place_now - 1] if self._place_now else ""
+        if self._negating or before in {"not", "nothing", "never", "hardly"}:
             return
-        if self._clause_side in {None, AHEAD} or "ahead" in tokens[place:]:
+        if self._clause_side in {None, AHEAD} or "ahead" in self._tokens[self._place_now :]:
             self.blocked = True
 
-    def _other(self, _: None, tokens: list[str], place: int, count: int) -> None:
+    def _other(self, _: None) -> None:
         self._end_run()
 
     def _unknown(self, tokens: list[str], place: int) -> int:
         """Take an unknown word, or a distance in metres; return how many words were taken."""
-        token = tokens[place]
-        metres = _NUMBER_WORDS.get(token) if not token[0].isdigit() else float(token)
+        word = tokens[place]
+        metres = float(word) if word[0].isdigit() else _NUMBER_WORDS.get(word)
         if metres is not None and place + 1 < len(tokens) and tokens[place + 1] in _METRES:
             self._cue("distance", NEAR if metres <= _NEAR_M else MIDDLE if metres <= _MIDDLE_M else FAR)
             return 2
-        if token[0].isdigit():
+        if word[0].isdigit():
             self._end_run()
-            self._count = 3 if float(token) > 2 else int(float(token))
-        elif token != "away":
-            self._run.append(token)
+            self._count = 3 if float(word) > 2 else int(float(word))
+        elif word != "away":
+            self._run.append(word)
         return 1
 
     def _end_run(self) -> None:

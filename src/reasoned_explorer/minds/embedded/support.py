@@ -19,8 +19,8 @@ _LOOSE = frozenset({"near", "with"})
 def target_support(mention: Mention, reading: SceneReading, target: Target) -> float:
     """Return how far a caption supports one condition on a mentioned thing, in [0, 1].
 
-    Stated outright it is 1. A target that stands about as far away makes "near" likely and "under" possible; one that is
-    somewhere else in the picture makes little likely.
+    Stated outright it is 1. A target that stands about as far away makes "near" likely and "under" possible; one that
+    is somewhere else in the picture makes little likely.
     """
     if not mention.relations and not target.degrees and not target.words:
         return 0.0

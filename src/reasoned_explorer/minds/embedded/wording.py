@@ -7,6 +7,7 @@ about 25 m, "in the distance" and "background" what lies beyond.
 from enum import IntEnum
 from functools import cache
 from itertools import product
+from typing import Any
 
 from reasoned_explorer.minds.embedded.lexicon import PhraseTable, word_table
 
@@ -33,11 +34,12 @@ class Part(IntEnum):
     OTHER = 13
 
 
-Meaning = tuple[Part, object]
+Meaning = tuple[Part, Any]
 
 _DISTANCES = {
     NEAR: "in the foreground|in the near foreground|foreground|close to the viewer|close to the camera|close to you|"
-    "near the viewer|near the camera|near you|close by|close|closest|nearby|nearest|right here|here|at hand|within reach|"
+    "near the viewer|near the camera|near you|close by|close|closest|nearby|nearest|right here|here|at hand|within "
+    "reach|"
     "a few steps away|a few metres away|a few meters away|at your feet|beside you|next to you|right beside you|"
     "right next to you|next to the viewer|beside the viewer|underfoot|immediately|at close range|up close",
     MIDDLE: "a little further on|a little farther on|a little further|a little farther|further on|farther on|"
@@ -83,8 +85,10 @@ _COUNTS = {
 }
 _VERBS = (
     "is|are|was|were|be|been|being|can|could|may|might|must|will|would|stands|stand|standing|sits|sit|sitting|lies|lie|"
-    "lying|leads|lead|leading|runs|run|running|stretches|stretch|stretching|extends|extend|extending|continues|continue|"
-    "continuing|goes|go|going|appears|appear|seen|see|visible|shows|show|showing|shown|has|have|having|features|feature|"
+    "lying|leads|lead|leading|runs|run|running|stretches|stretch|stretching|extends|extend|extending|continues|"
+    "continue|"
+    "continuing|goes|go|going|appears|appear|seen|see|visible|shows|show|showing|shown|has|have|having|features|"
+    "feature|"
     "includes|include|contains|contain|parked|located|placed|situated|grows|grow|growing|hangs|hang|rises|rise|rising|"
     "towers|crosses|crossing the|crossing a|walking|walks|walk|riding|rides|playing|plays|waiting|looking|looks|covers|"
     "cover|covered|passes|passing|turns|turn|opens|open|ends|end|comes|come|surrounds|follows|curves|winds|winding|"
@@ -112,8 +116,10 @@ _OTHER = (
     "over|up|down|into|through|off|out|toward|towards|across|behind it all"
 )
 _BLOCKED = (
-    "fills most of the view|fills the view|fills the whole view|fills the entire view|fills the picture|fills the frame|"
-    "fill most of the view|fill the view|dead end|no way through|no way ahead|no way forward|no way on|no passage|impassable|"
+    "fills most of the view|fills the view|fills the whole view|fills the entire view|fills the picture|fills the "
+    "frame|"
+    "fill most of the view|fill the view|dead end|no way through|no way ahead|no way forward|no way on|no passage|"
+    "impassable|"
     "blocked|is blocked|are blocked|cannot go further|no way past|cannot be passed|takes up most of the view|"
     "takes up the whole view|covers most of the view|bars the way|ends at a wall|closed off"
 )
@@ -130,8 +136,9 @@ def _side_phrases() -> list[tuple[str, Meaning]]:
     for word, side in (("left", LEFT), ("right", RIGHT)):
         forms = [
             word, f"on the {word}", f"to the {word}", f"at the {word}", f"on your {word}", f"to your {word}",
-            f"on the {word} side", f"on the {word}-hand side", f"on the far {word}", f"to the far {word}", f"{word} side",
-            f"to the {word} side", f"towards the {word}", f"on the {word} hand side", f"off to the {word}", f"far {word}",
+            f"on the {word} side", f"on the {word}-hand side", f"on the far {word}", f"to the far {word}", 
+                f"{word} side",            f"to the {word} side", f"towards the {word}", f"on the {word} hand side", f"off to the {word}",
+            f"far {word}",
         ]  # fmt: skip
         found += [(form, (Part.SIDE, side)) for form in forms]
         found += [
@@ -150,7 +157,9 @@ def _side_phrases() -> list[tuple[str, Meaning]]:
 @cache
 def caption_phrases() -> PhraseTable[Meaning]:
     """Return the table of all that a caption's words can mean, things included."""
-    found: list[tuple[str, Meaning]] = [(phrase, (Part.PLACE, place)) for place, t in _PLACES.items() for phrase in _split(t)]
+    found: list[tuple[str, Meaning]] = [
+        (phrase, (Part.PLACE, place)) for place, t in _PLACES.items() for phrase in _split(t)
+    ]
     found += _side_phrases()
     found += [(phrase, (Part.DISTANCE, code)) for code, text in _DISTANCES.items() for phrase in _split(text)]
     found += [(phrase, (Part.OTHER, None)) for phrase in _split(_NOT_BLOCKED)]
@@ -158,7 +167,9 @@ def caption_phrases() -> PhraseTable[Meaning]:
     verbs = ("blocks", "block", "blocking", "obstructs", "obstruct", "obstructing")
     found += [
         (f"{verb} {article} {way}", (Part.BLOCKED, None))
-        for verb, article, way in product(verbs, ("the", "your", "any"), ("way", "path ahead", "passage", "view", "route"))
+        for verb, article, way in product(
+            verbs, ("the", "your", "any"), ("way", "path ahead", "passage", "view", "route")
+        )
     ]
     found += [(phrase, (Part.DENIAL, None)) for phrase in _split(_DENIALS)]
     found += [(phrase, (Part.THING, "traffic_sign")) for phrase in _split(_NO_SIGNS)]

@@ -2,13 +2,14 @@
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import shapely
 from numpy.random import Generator
 from shapely import LineString, Polygon
 
-from reasoned_explorer.world.generator.shapes import blob, footprint, inner_circle, placed, polygons_of, spread
+from reasoned_explorer.world.generator.shapes import Points, blob, footprint, inner_circle, placed, polygons_of
 from reasoned_explorer.world.generator.sketch import Footprint, Sketch, Zone
 from reasoned_explorer.world.taxonomy import Ground
 
@@ -58,7 +59,7 @@ def blocks_between(area: Polygon, beds: shapely.Geometry) -> list[Polygon]:
     return found
 
 
-def _corner_free(ring: np.ndarray, clear_m: float, rng: Generator, frontage_m: tuple[float, float]) -> list[LineString]:
+def _corner_free(ring: Points, clear_m: float, rng: Generator, frontage_m: tuple[float, float]) -> list[LineString]:
     """Return cuts across a block's rim, none of them near a sharp corner."""
     steps = np.diff(ring, axis=0)
     lengths = np.hypot(steps[:, 0], steps[:, 1])
@@ -99,7 +100,7 @@ def perimeter_block(sketch: Sketch, rng: Generator, block: Polygon, fabric: Fabr
     pieces = polygons_of(shapely.polygonize([shapely.union_all([rim.boundary, *cuts])]))
     lots = [piece for piece in pieces if piece.area > 20.0 and rim.contains(piece.representative_point())]
     # A passage as wide as a lorry into every courtyard, so that no ground is closed off.
-    passage = _passage(rng, block, court, ring)
+    passage = _passage(rng, court, ring)
     sketch.lay(Ground.YARD, court, "courtyard")
     sketch.lay(Ground.PAVEMENT, rim)
     choice = rng.random()
@@ -122,7 +123,7 @@ def perimeter_block(sketch: Sketch, rng: Generator, block: Polygon, fabric: Fabr
                 sketch.build(Footprint(part, round(max(height, 4.0), 1), fabric.zone, _use(rng, fabric)))
 
 
-def _passage(rng: Generator, block: Polygon, court: shapely.Geometry, ring: np.ndarray) -> shapely.Geometry:
+def _passage(rng: Generator, court: shapely.Geometry, ring: Points) -> shapely.Geometry:
     """Return strips that join each courtyard to the street."""
     strips = []
     for part in polygons_of(court):
@@ -167,7 +168,7 @@ def _solid_block(sketch: Sketch, rng: Generator, block: Polygon, fabric: Fabric)
     shares[1:-1] += rng.uniform(-0.2, 0.2, count - 1) / count
     base = height_of(rng, fabric.levels)
     open_slice = int(rng.integers(1, count - 1)) if count > 3 and rng.random() < 0.5 else -1
-    for index, (start, end) in enumerate(zip(shares[:-1], shares[1:], strict=True)):
+    for index, (start, end) in enumerate(pairwise(shares.tolist())):
         if index == open_slice:
             continue
         corners = [a + (b - a) * start, a + (b - a) * end, a + (b - a) * end + across, a + (b - a) * start + across]
@@ -298,8 +299,3 @@ def fill_blocks(sketch: Sketch, rng: Generator, blocks: list[Polygon], fabric: F
             _tower_block(sketch, rng, block, fabric)
         else:
             perimeter_block(sketch, rng, block, fabric)
-
-
-def scatter_patches(rng: Generator, area: Polygon, spacing_m: float, radius_m: tuple[float, float]) -> list[Polygon]:
-    """Return smooth patches that lie about in an area."""
-    return [blob(rng, x, y, float(rng.uniform(*radius_m))) for x, y in spread(rng, area, spacing_m)]

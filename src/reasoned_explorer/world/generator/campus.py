@@ -62,7 +62,7 @@ def fill_campus(sketch: Sketch, rng: Generator, cell: Polygon, area: Polygon, *,
     _free_buildings(sketch, rng, ground, [*quads, *features], first)
     taken = shapely.union_all([item.area for item in sketch.footprints[first:]]).buffer(10.0, quad_segs=2)
     _outside(sketch, rng, [part for part in parts if part is not inner], taken)
-    _paths(sketch, rng, inner, quads, features, (first, bottom))
+    _paths(sketch, rng, inner, (quads, features), (first, bottom))
 
 
 def _ring_road(rng: Generator, cell: Polygon) -> Points:
@@ -144,7 +144,7 @@ def _features(sketch: Sketch, rng: Generator, inner: Polygon, quads: list[Polygo
         spots = spread(rng, shapely.buffer(inner, -radius - 2.0), 17.0, jitter=0.5)
         if not len(spots):
             continue
-        free = shapely.distance(shapely.points(spots)[:, None], np.array(taken)[None, :]).min(axis=1) > radius
+        free = shapely.distance(shapely.points(spots)[:, None], np.array(taken, dtype=object)[None, :]).min(axis=1, initial=math.inf) > radius
         edge = shapely.distance(shapely.points(spots), inner.exterior)
         if not free.any():
             continue
@@ -208,10 +208,14 @@ def _outside(sketch: Sketch, rng: Generator, parts: list[Polygon], taken: shapel
 
 
 def _paths(
-    sketch: Sketch, rng: Generator, inner: Polygon, quads: list[Polygon], features: list[Polygon], start: tuple[int, int]
+    sketch: Sketch,
+    rng: Generator,
+    inner: Polygon,
+    areas: tuple[list[Polygon], list[Polygon]],
+    start: tuple[int, int],
 ) -> None:
     """Pave the quads' walks, and winding paths between doors, quads, features and the road."""
-    first, bottom = start
+    (quads, features), (first, bottom) = areas, start
     nodes: list[Points] = []
     for quad in quads:
         ring = np.asarray(shapely.buffer(quad, 2.0, join_style="mitre").exterior.coords)
@@ -241,7 +245,7 @@ def _paths(
     wet = [item.area.buffer(2.5, quad_segs=2) for item in sketch.patches[bottom:] if item.role in ("pond", "pitch")]
     blocked = shapely.union_all([*walls, *wet, *(quad.buffer(-1.0) for quad in quads)])
     shapely.prepare(blocked)
-    pairs = [*neighbours(points, longest_m=130.0), *_nearest(points, 3)]
+    pairs = [*neighbours(points, longest_m=150.0), *_nearest(points, 6)]
     for one, other in dict.fromkeys((min(pair), max(pair)) for pair in pairs):
         for sag in (float(rng.normal(0, 0.1)), 0.0, 0.2, -0.2):
             line = bow(points[one], points[other], sag)

@@ -22,6 +22,7 @@ from reasoned_explorer.world.generator.habits import (
     MOST_PER_KM2,
     ROLE_LIKING,
     SIZE_SPREAD,
+    SPACING_M,
     ZONE_FACTORS,
 )
 from reasoned_explorer.world.generator.occupancy import Occupancy
@@ -89,9 +90,9 @@ class Pull:
         cap: Largest absolute log lift of one pair that counts.
     """
 
-    pairs: float = 0.55
-    grounds: float = 0.4
-    cap: float = 2.5
+    pairs: float = 0.8
+    grounds: float = 0.5
+    cap: float = 3.5
 
 
 def standing_size(name: str) -> tuple[float, float, float]:
@@ -115,15 +116,12 @@ class Furnisher:
         sketch: For zones and draws.
         plan: What ground is where.
         sites: Where things could stand.
-        taken: What stands already.
         statistics: Of real places.
         pull: How strongly the statistics act.
     """
 
-    def __init__(
-        self, sketch: Sketch, plan: GroundPlan, sites: Sites, taken: Occupancy, statistics: Statistics, pull: Pull
-    ) -> None:
-        self._sketch, self._plan, self._sites, self._taken = sketch, plan, sites, taken
+    def __init__(self, sketch: Sketch, plan: GroundPlan, sites: Sites, *, statistics: Statistics, pull: Pull) -> None:
+        self._sketch, self._plan, self._sites, self._taken = sketch, plan, sites, Occupancy()
         self._density = statistics.density_per_km2
         self._pull = pull
         self._pairs = np.clip(lift_matrix(statistics), -pull.cap, pull.cap) * pull.pairs
@@ -138,6 +136,7 @@ class Furnisher:
         self._present = np.zeros((count, len(CLASS_NAMES)), bool)
         self._used = np.zeros(count, bool)
         self.things: list[Thing] = []
+        self._landmarks: dict[str, list[tuple[float, float]]] = {}
         self._counts = np.zeros((len(CLASS_NAMES), len(sketch.zones)))
         self._index_cells()
 
@@ -184,6 +183,8 @@ class Furnisher:
         self.things.append(thing)
         code = _CODE[thing.class_name]
         self._counts[code, zone] += 1
+        if thing.class_name in SPACING_M:
+            self._landmarks.setdefault(thing.class_name, []).append((thing.x_m, thing.y_m))
         if OBJECT_CLASSES[thing.class_name].kind not in ("place", "area"):
             length, depth = (0.5, 0.5) if thing.class_name == "tree" else thing.size_m[:2]
             self._taken.take(thing.x_m, thing.y_m, thing.heading_rad, length, depth)
@@ -287,7 +288,9 @@ class Furnisher:
         # Deep things stand back from the line that they stand on.
         back = np.maximum(sizes[:, 1] / 2 - 0.35, 0.0)
         back = back * np.select(
-            [np.isin(sites.roles[candidates], [Role.KERB, Role.FRONT]), sites.roles[candidates] == Role.VERGE], [1, -1], 0
+            [np.isin(sites.roles[candidates], [Role.KERB, Role.FRONT]), sites.roles[candidates] == Role.VERGE],
+            [1, -1],
+            0,
         )
         points = sites.points[candidates] + looks * back[:, None]
         if cls.kind == "place":
@@ -300,7 +303,7 @@ class Furnisher:
             ]
             grounds = self._plan.at(np.vstack(corners)).reshape(5, -1)
             good = ~_NEVER[grounds].any(axis=0)
-        placed = 0
+        placed, apart = 0, SPACING_M.get(name, 0.0)
         for index in np.flatnonzero(good).tolist():
             if placed >= most:
                 break
@@ -308,6 +311,8 @@ class Furnisher:
             heading = float(headings[index] % (2 * math.pi))
             size = (float(sizes[index, 0]), float(sizes[index, 1]), float(sizes[index, 2]))
             if cls.kind != "place" and not self._taken.free(x, y, heading, size[0], size[1]):
+                continue
+            if any(math.hypot(x - at[0], y - at[1]) < apart for at in self._landmarks.get(name, ())):
                 continue
             site = int(candidates[index])
             self._used[site] = True

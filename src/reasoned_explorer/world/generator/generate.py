@@ -1,24 +1,26 @@
 """The generator: from a district's name, a seed and a size to a world."""
 
 import math
+from typing import get_args
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from reasoned_explorer.world.generator.assemble import building_of, regions_of, rings_of, ways_of
 from reasoned_explorer.world.generator.furniture import Furnisher, Pull, Statistics, Thing, standing_size
 from reasoned_explorer.world.generator.greenery import plant_bushes, plant_trees
 from reasoned_explorer.world.generator.ground import GroundPlan
-from reasoned_explorer.world.generator.occupancy import Occupancy
 from reasoned_explorer.world.generator.shapes import Points, heading_of
 from reasoned_explorer.world.generator.sites import Sites, find_sites, zone_of
 from reasoned_explorer.world.generator.sketch import Sketch, Zone
 from reasoned_explorer.world.generator.streets import add_crossings
-from reasoned_explorer.world.generator.town import FILLS, fill_district, fill_town
+from reasoned_explorer.world.generator.town import fill_district, fill_town
 from reasoned_explorer.world.generator.traffic import park_cars
 from reasoned_explorer.world.taxonomy import OBJECT_CLASSES, Ground
 from reasoned_explorer.world.world import Bounds, Building, World, WorldObject
 
+Numbers = NDArray[np.float64]
 _AREA_CLASS = {"playground": "playground", "pitch": "pitch", "lawn": "lawn", "meadow": "lawn", "picnic": "lawn"}
 
 
@@ -43,17 +45,18 @@ def build_world(district: str, *, seed: int, size_m: float, statistics: Statisti
     shells = tuple(building_of(item, np.empty((0, 2))) for item in sketch.footprints)
     plan = GroundPlan(regions, ways, shells, sketch.box)
     sites = find_sites(sketch, plan, crossings)
-    furnisher = Furnisher(sketch, plan, sites, Occupancy(), statistics, pull or Pull())
+    furnisher = Furnisher(sketch, plan, sites, statistics=statistics, pull=pull or Pull())
     _stand_areas(sketch, furnisher)
     _equip(sketch)
     _stand_fixtures(sketch, plan, furnisher)
-    _stand_bulk(sketch, furnisher, "car", *park_cars(sketch, plan, crossings))
+    cars, ways_ahead = park_cars(sketch, plan, crossings)
+    _stand_bulk(sketch, furnisher, "car", cars, headings=ways_ahead)
     trees, crowns = plant_trees(sketch, plan)
-    _stand_bulk(sketch, furnisher, "tree", trees, np.zeros(len(trees)), crowns)
+    _stand_bulk(sketch, furnisher, "tree", trees, headings=np.zeros(len(trees)), widths=crowns)
     _stand_hosts(sketch, furnisher)
     furnisher.furnish()
     bushes, widths = plant_bushes(sketch, plan)
-    _stand_bulk(sketch, furnisher, "shrub", bushes, np.zeros(len(bushes)), widths)
+    _stand_bulk(sketch, furnisher, "shrub", bushes, headings=np.zeros(len(bushes)), widths=widths)
     objects = tuple(
         WorldObject(
             id=index,
@@ -83,7 +86,7 @@ def build_world(district: str, *, seed: int, size_m: float, statistics: Statisti
 
 
 def _zone(district: str) -> Zone:
-    return next(zone for zone in FILLS if zone == district)
+    return next(zone for zone in get_args(Zone) if zone == district)
 
 
 def _stand_areas(sketch: Sketch, furnisher: Furnisher) -> None:
@@ -130,7 +133,8 @@ def _equip(sketch: Sketch) -> None:
             aside = np.array([-step[1], step[0]])
             # A wide gap in the middle lets the fire brigade through.
             for offset in (-4.0, -3.0, -2.0, 2.0, 3.0, 4.0):
-                sketch.put("bollard", *(foot + aside * offset).tolist(), float(math.atan2(*step)) % (2 * math.pi))
+                x, y = (foot + aside * offset).tolist()
+                sketch.put("bollard", x, y, float(math.atan2(*step)) % (2 * math.pi))
 
 
 def _stand_fixtures(sketch: Sketch, plan: GroundPlan, furnisher: Furnisher) -> None:
@@ -151,7 +155,7 @@ def _stand_fixtures(sketch: Sketch, plan: GroundPlan, furnisher: Furnisher) -> N
 
 
 def _stand_bulk(
-    sketch: Sketch, furnisher: Furnisher, name: str, points: Points, headings: Points, widths: Points | None = None
+    sketch: Sketch, furnisher: Furnisher, name: str, points: Points, *, headings: Numbers, widths: Numbers | None = None
 ) -> None:
     """Stand many of a kind that were laid out together, those left out for which there is no room."""
     rng = sketch.rng("bulk", name)

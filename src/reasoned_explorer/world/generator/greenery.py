@@ -1,5 +1,7 @@
 """Trees and bushes: rows along streets, promenades and quays, woods, groves, hedges, gardens."""
 
+from collections.abc import Iterator
+
 import numpy as np
 import shapely
 from numpy.typing import NDArray
@@ -37,55 +39,59 @@ _BUSHES: dict[str, tuple[float, float]] = {
     "campus": (26.0, 0.3),
     "courtyard": (9.0, 0.2),
 }
+#: Points, diameters of crowns, margin to paths.
+_Stand = tuple[Points, NDArray[np.float64], float]
 _TREE_GROUND = (Ground.GRASS, Ground.WOOD, Ground.GARDEN, Ground.YARD, Ground.PLAZA, Ground.PAVEMENT)
 
 
 def plant_trees(sketch: Sketch, plan: GroundPlan) -> tuple[Points, NDArray[np.float64]]:
     """Return where trees stand, shape (n, 2), and the diameters of their crowns, metres."""
-    spots: list[Points] = []
-    crowns: list[NDArray[np.float64]] = []
-    margins: list[NDArray[np.float64]] = []
+    stands = [*_street_trees(sketch), *_alleys(sketch), *_patch_trees(sketch)]
+    if not stands:
+        return np.empty((0, 2)), np.empty(0)
+    points = np.vstack([at for at, _, _ in stands])
+    crowns = np.concatenate([crown for _, crown, _ in stands])
+    clear = np.concatenate([np.full(len(at), margin) for at, _, margin in stands])
+    good = np.isin(plan.at(points), _TREE_GROUND) & shapely.contains_xy(shapely.buffer(sketch.box, -0.6), points)
+    good &= _clear_of_paths(sketch, points, clear)
+    if plan.walls is not None:
+        close, _ = plan.walls.query(shapely.points(points), predicate="dwithin", distance=2.2)
+        good[close] = False
+    points, crowns = points[good], crowns[good]
+    kept = thin(points, 3.4)
+    return points[kept], np.round(np.clip(crowns[kept], 2.5, 13.0), 1)
 
-    def add(at: Points, crown: NDArray[np.float64], margin: float) -> None:
-        spots.append(at)
-        crowns.append(crown)
-        margins.append(np.full(len(at), margin))
 
+def _street_trees(sketch: Sketch) -> Iterator[_Stand]:
     for index, street in enumerate(sketch.streets):
         if street.trees <= 0:
             continue
         rng = sketch.rng("street trees", index)
         at, tangents = along(street.line, street.trees, start_m=6.0, end_m=6.0)
-        normals = left_of(tangents)
-        offset = street.road_m / 2 + 1.1 if street.road_m > 0 else 2.6
+        offset = (street.road_m / 2 + 1.1 if street.road_m > 0 else 2.6) * left_of(tangents)
         for side in (1.0, -1.0):
             keep = rng.random(len(at)) < 0.9
-            add((at + side * offset * normals)[keep], rng.uniform(3.6, 6.0, int(keep.sum())), 1.2)
+            yield (at + side * offset)[keep], rng.uniform(3.6, 6.0, int(keep.sum())), 1.2
+
+
+def _alleys(sketch: Sketch) -> Iterator[_Stand]:
     for index, trail in enumerate(sketch.trails):
         if trail.width_m >= 4.4 and trail.ground == Ground.PATH:
             rng = sketch.rng("alley", index)
             at, tangents = along(trail.line, 8.5, start_m=5.0, end_m=5.0)
-            normals = left_of(tangents) * (trail.width_m / 2 + 2.2)
+            offset = left_of(tangents) * (trail.width_m / 2 + 2.2)
             for side in (1.0, -1.0):
-                add(at + side * normals, rng.uniform(5.5, 7.5, len(at)), 0.5)
+                yield at + side * offset, rng.uniform(5.5, 7.5, len(at)), 0.5
+
+
+def _patch_trees(sketch: Sketch) -> Iterator[_Stand]:
     for index, patch in enumerate(sketch.patches):
         if patch.role in _PLANTING:
             rng = sketch.rng("patch trees", index)
             spacing, share = _PLANTING[patch.role]
             at = spread(rng, shapely.buffer(patch.area, -1.5), spacing)
             at = at[rng.random(len(at)) < share]
-            add(at, rng.gamma(9.0, 0.62, len(at)) + 1.2, 0.6 if patch.role == "wood" else 1.0)
-    if not spots:
-        return np.empty((0, 2)), np.empty(0)
-    points, sizes, clear = np.vstack(spots), np.concatenate(crowns), np.concatenate(margins)
-    good = np.isin(plan.at(points), _TREE_GROUND) & shapely.contains_xy(shapely.buffer(sketch.box, -0.6), points)
-    good &= _clear_of_paths(sketch, points, clear)
-    if plan.walls is not None:
-        close, _ = plan.walls.query(shapely.points(points), predicate="dwithin", distance=2.2)
-        good[close] = False
-    points, sizes = points[good], sizes[good]
-    kept = thin(points, 3.4)
-    return points[kept], np.round(np.clip(sizes[kept], 2.5, 13.0), 1)
+            yield at, rng.gamma(9.0, 0.62, len(at)) + 1.2, 0.6 if patch.role == "wood" else 1.0
 
 
 def plant_bushes(sketch: Sketch, plan: GroundPlan) -> tuple[Points, NDArray[np.float64]]:

@@ -110,8 +110,6 @@ def _painted(areas: list[shapely.Geometry], codes: list[Ground], origin: tuple[f
     filled = ends > starts
     picture = np.zeros(cells * cells, np.int8)
     paint = np.array([int(code) for code in codes], np.int8)[area]
-    for start, end, code in zip(
-        starts[filled].tolist(), ends[filled].tolist(), paint[filled].tolist(), strict=True
-    ):
+    for start, end, code in zip(starts[filled].tolist(), ends[filled].tolist(), paint[filled].tolist(), strict=True):
         picture[start:end] = code
     return picture.reshape(cells, cells)

@@ -25,10 +25,10 @@ ROLE_LIKING: Mapping[str, Mapping[Role, float]] = {
     "bollard": {_K: 0.5, _C: 1.5, _O: 0.5},
     "bicycle_parking": {_K: 0.8, _F: 0.8, _O: 0.8, _L: 0.5},
     "bicycle_rental": {_K: 1.0, _L: 1.0, _O: 0.4},
-    "fountain": {_O: 1.0, _G: 0.25},
+    "fountain": {_O: 1.0, _G: 0.05},
     "drinking_water": {_V: 0.8, _O: 1.0, _P: 1.0, _K: 0.1},
     "artwork": {_O: 1.0, _G: 0.5, _V: 0.5, _F: 0.2},
-    "monument": {_O: 1.0, _G: 0.6, _V: 0.4, _F: 0.2},
+    "monument": {_O: 1.0, _G: 0.2, _V: 0.4, _F: 0.2},
     "information": {_V: 1.2, _O: 1.0, _K: 0.4, _F: 0.3, _C: 0.6},
     "advertising": {_K: 1.0, _C: 1.0, _O: 0.5},
     "bus_stop": {_K: 1.0},
@@ -88,13 +88,57 @@ def _factors(common: float, trade: float, traffic: float, rest: float, **more: f
 #: How common a class is in a district against the centres that the data are from. Assumed.
 ZONE_FACTORS: Mapping[Zone, Mapping[str, float]] = {
     "downtown": _factors(1.0, 1.0, 1.2, 0.9, person=1.0, picnic_table=0.2),
-    "plaza": _factors(1.0, 1.25, 0.8, 1.2, person=2.2, outdoor_seating=2.0, planter=2.0, picnic_table=0.2),
-    "park": _factors(0.8, 0.3, 0.5, 2.2, person=0.8, picnic_table=5.0, street_lamp=0.8, kiosk=1.5, bicycle=0.5),
-    "campus": _factors(0.8, 0.2, 0.5, 1.3, person=1.0, bicycle=2.0, bicycle_parking=1.2, picnic_table=2.0),
-    "residential": _factors(0.5, 0.14, 0.5, 0.4, person=0.25, bicycle=0.4, street_lamp=0.8, recycling=1.0, church=0.4),
+    "plaza": _factors(
+        1.0, 1.25, 0.8, 1.2, fountain=0.9, monument=0.9, person=2.2, outdoor_seating=2.0, planter=2.0, picnic_table=0.2
+    ),
+    "park": _factors(
+        0.8,
+        0.3,
+        0.5,
+        2.2,
+        person=0.8,
+        fountain=1.0,
+        monument=1.0,
+        picnic_table=5.0,
+        street_lamp=0.8,
+        kiosk=1.5,
+        bicycle=0.5,
+    ),
+    "campus": _factors(
+        0.8,
+        0.2,
+        0.5,
+        1.3,
+        fountain=0.6,
+        monument=0.7,
+        hotel=0.05,
+        person=1.0,
+        bicycle=2.0,
+        bicycle_parking=1.2,
+        picnic_table=2.0,
+    ),
+    "residential": _factors(
+        0.5,
+        0.14,
+        0.5,
+        0.4,
+        fountain=0.1,
+        monument=0.15,
+        person=0.25,
+        bicycle=0.4,
+        street_lamp=0.8,
+        recycling=1.0,
+        church=0.4,
+    ),
     "waterfront": _factors(0.8, 0.6, 0.7, 1.4, person=1.2, flagpole=2.0, outdoor_seating=1.5),
 }
 
+#: Landmarks keep at least this distance from the next of their kind, metres. Assumed.
+SPACING_M: Mapping[str, float] = {
+    "fountain": 25.0, "monument": 30.0, "kiosk": 30.0, "artwork": 12.0, "clock": 80.0, "telephone": 30.0,
+    "post_box": 30.0, "bicycle_rental": 40.0, "recycling": 20.0, "advertising": 25.0, "street_lamp": 7.0,
+    "fire_hydrant": 12.0, "bus_stop": 10.0, "drinking_water": 30.0,
+}  # fmt: skip
 #: Usual variation of size about the typical one, as a share. Assumed.
 SIZE_SPREAD: Mapping[str, float] = {
     "bench": 0.1, "fountain": 0.25, "artwork": 0.3, "monument": 0.3, "planter": 0.2, "kiosk": 0.15, "car": 0.06,

@@ -57,7 +57,7 @@ def fill_park(sketch: Sketch, rng: Generator, cell: Polygon, area: Polygon, *, f
     park = area if framed else _fringe(sketch, rng, cell)
     bottom = (len(sketch.patches), len(sketch.footprints))
     sketch.lay(Ground.GRASS, park, "park")
-    lines = path_web(sketch, rng, park)
+    lines = path_web(rng, park)
     for line, width in lines:
         sketch.pave(line, width, Ground.PATH, "footway")
     web = shapely.union_all([LineString(line).buffer(width / 2 + 0.3, quad_segs=2) for line, width in lines])
@@ -90,7 +90,7 @@ def _fringe(sketch: Sketch, rng: Generator, cell: Polygon) -> Polygon:
     return park
 
 
-def path_web(sketch: Sketch, rng: Generator, park: Polygon) -> list[tuple[Points, float]]:
+def path_web(rng: Generator, park: Polygon) -> list[tuple[Points, float]]:
     """Return the lines and widths of a park's paths: gates, a promenade, a loop and a web between."""
     outline = park.exterior
     gate_count = max(4, round(outline.length / 150.0))
@@ -120,9 +120,7 @@ def path_web(sketch: Sketch, rng: Generator, park: Polygon) -> list[tuple[Points
         lines.append((np.vstack([ring, ring[:1]]), 3.0))
     # Wherever a web's edge left the park through a bent border it is cut off.
     room = shapely.buffer(park, 4.0)
-    return [
-        (part, width) for line, width in lines for part in lines_of(shapely.intersection(LineString(line), room))
-    ]
+    return [(part, width) for line, width in lines for part in lines_of(shapely.intersection(LineString(line), room))]
 
 
 def _rounded(mesh: Polygon, margin_m: float, radius_m: float) -> list[Polygon]:
@@ -151,36 +149,43 @@ def _fill_meshes(sketch: Sketch, rng: Generator, meshes: list[Polygon]) -> None:
 
 
 def lay_mesh(sketch: Sketch, rng: Generator, mesh: Polygon, use: str) -> None:
-    """Lay one mesh out for a use: ``pond``, ``meadow``, ``pitch``, ``wood``, ``playground``, ``cafe``, ``garden``,
-    ``picnic``, ``grove`` or ``lawn``."""
+    """Lay one mesh out.
+
+    Args:
+        sketch: Where to draw.
+        rng: Draws.
+        mesh: What lies between paths.
+        use: ``pond``, ``meadow``, ``pitch``, ``wood``, ``playground``, ``cafe``, ``garden``, ``picnic``, ``grove`` or
+            ``lawn``.
+    """
     x, y, radius = inner_circle(mesh)
     if use == "pond":
         shape = shapely.intersection(
             shapely.union_all(_rounded(mesh, 7.0, 5.0)), blob(rng, x, y, radius * 1.25, roughness=0.3)
         )
-        for part in polygons_of(shape):
-            sketch.lay(Ground.WATER, shapely.buffer(shapely.buffer(part, -2.0), 2.0), "pond", name="Pond")
-    elif use == "wood":
-        for part in _rounded(mesh, 1.0, 4.0):
-            sketch.lay(Ground.WOOD, part, "wood")
+        sketch.lay(Ground.WATER, shapely.buffer(shapely.buffer(shape, -2.0), 2.0), "pond", name="Pond")
     elif use == "pitch":
         _pitch(sketch, rng, mesh)
     elif use == "playground":
         sketch.lay(Ground.PLAYGROUND, blob(rng, x, y, min(radius * 0.8, 15.0), roughness=0.14), "playground")
     elif use == "cafe":
-        sketch.lay(Ground.PLAZA, blob(rng, x, y, min(radius * 0.85, 16.0), roughness=0.1), "terrace")
-        nearest = np.asarray(shapely.shortest_line(shapely.points(x, y), mesh.exterior).coords)
-        sketch.pave(np.vstack([nearest[0], nearest[1] + (nearest[1] - nearest[0]) * 0.3]), 3.0, Ground.PATH)
-        heading = float(math.atan2(*(nearest[1] - nearest[0])))
-        hut = placed(footprint("rect", 9.0, 5.5, 3.0), x, y, heading)
-        door = (x + 2.75 * math.sin(heading), y + 2.75 * math.cos(heading))
-        sketch.build(Footprint(hut, 4.2, "park", "pavilion", door, hosts=("cafe", "toilets")))
-    elif use == "garden":
-        for part in _rounded(mesh, 4.0, 3.0):
-            sketch.lay(Ground.GARDEN, part, "garden")
+        _pavilion(sketch, rng, mesh)
     else:
-        for part in _rounded(mesh, 0.5, 1.5):
-            sketch.lay(Ground.GRASS, part, use)
+        ground = {"wood": Ground.WOOD, "garden": Ground.GARDEN}.get(use, Ground.GRASS)
+        margin, radius = {"wood": (1.0, 4.0), "garden": (4.0, 3.0)}.get(use, (0.5, 1.5))
+        sketch.lay(ground, shapely.union_all(_rounded(mesh, margin, radius)), use)
+
+
+def _pavilion(sketch: Sketch, rng: Generator, mesh: Polygon) -> None:
+    """Build a cafe with toilets on a terrace, its door to the nearest path."""
+    x, y, radius = inner_circle(mesh)
+    sketch.lay(Ground.PLAZA, blob(rng, x, y, min(radius * 0.85, 16.0), roughness=0.1), "terrace")
+    nearest = np.asarray(shapely.shortest_line(shapely.points(x, y), mesh.exterior).coords)
+    sketch.pave(np.vstack([nearest[0], nearest[1] + (nearest[1] - nearest[0]) * 0.3]), 3.0, Ground.PATH)
+    heading = float(math.atan2(*(nearest[1] - nearest[0])))
+    hut = placed(footprint("rect", 9.0, 5.5, 3.0), x, y, heading)
+    door = (x + 2.75 * math.sin(heading), y + 2.75 * math.cos(heading))
+    sketch.build(Footprint(hut, 4.2, "park", "pavilion", door, hosts=("cafe", "toilets")))
 
 
 def _pitch(sketch: Sketch, rng: Generator, mesh: Polygon) -> None:

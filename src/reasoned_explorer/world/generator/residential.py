@@ -37,16 +37,16 @@ def fill_residential(sketch: Sketch, rng: Generator, cell: Polygon, area: Polygo
     def kind_of(axis: int, index: int) -> str:
         return "residential" if axis == 0 or index % 2 == 0 else "living_street"
 
-    streets = draw_grid(
-        sketch, rng, nodes, within=cell, kind_of=kind_of, missing=0.22, curved=True, frame=True
-    )
+    streets = draw_grid(sketch, rng, nodes, within=cell, kind_of=kind_of, missing=0.22, curved=True, frame=True)
     blocks = blocks_between(area, sketch.beds(streets))
     stubs = _dead_ends(sketch, rng, blocks)
     for street in stubs:
         bulb = shapely.points(street.line[-1]).buffer(9.5)
         sketch.lay(Ground.PAVEMENT, bulb.buffer(1.8))
         sketch.lay(Ground.ROAD, bulb)
-    beds = shapely.union_all([sketch.beds([*streets, *stubs]), *(shapely.points(s.line[-1]).buffer(11.3) for s in stubs)])
+    beds = shapely.union_all(
+        [sketch.beds([*streets, *stubs]), *(shapely.points(s.line[-1]).buffer(11.3) for s in stubs)]
+    )
     blocks = blocks_between(area, beds)
     houses: list[Polygon] = []
     for block in blocks:
@@ -147,9 +147,7 @@ def _on_border(sketch: Sketch, point: Points) -> bool:
     return float(sketch.box.exterior.distance(shapely.points(point))) < 1.5
 
 
-def _drive(
-    sketch: Sketch, rng: Generator, frame: tuple[Points, Points, Points], width: float, back: float
-) -> None:
+def _drive(sketch: Sketch, rng: Generator, frame: tuple[Points, Points, Points], width: float, back: float) -> None:
     """Pave a drive beside a house and leave a car on it now and then."""
     at, tangent, normal = frame
     foot = at + tangent * (width / 2 + 2.0)

@@ -43,14 +43,16 @@ def smooth(points: Points, *, closed: bool = False, per_segment: int = 6) -> Poi
     return flat if closed else np.vstack([flat, given[-1]])
 
 
-def blob(rng: Generator, x_m: float, y_m: float, radius_m: float, *, roughness: float = 0.22, knots: int = 9) -> Polygon:
+def blob(
+    rng: Generator, x_m: float, y_m: float, radius_m: float, *, roughness: float = 0.22, knots: int = 9
+) -> Polygon:
     """Return a smooth closed shape about a point, longer than wide, of about the given mean radius."""
     turn = rng.uniform(0, 2 * math.pi)
     angles = np.arange(knots) * (2 * math.pi / knots)
     radii = radius_m * (1 + roughness * rng.uniform(-1, 1, knots))
     stretch = rng.uniform(1.0, 1.35)
     ring = np.column_stack([radii * np.cos(angles) * stretch, radii * np.sin(angles) / stretch])
-    polygon: Polygon = shapely.make_valid(Polygon(smooth(turned(ring, turn) + (x_m, y_m), closed=True)))
+    polygon: Polygon = shapely.make_valid(Polygon(smooth(turned(ring, turn) + np.array([x_m, y_m]), closed=True)))
     return polygon
 
 
@@ -89,7 +91,7 @@ def footprint(kind: str, width_m: float, depth_m: float, wing_m: float) -> Point
 def placed(ring: Points, x_m: float, y_m: float, heading_rad: float) -> Polygon:
     """Return a footprint moved to a point, its front facing a compass heading (clockwise from north)."""
     # The front looks along -y, which is a heading of pi; compass headings turn clockwise, `turned` anticlockwise.
-    return Polygon(turned(ring, math.pi - heading_rad) + (x_m, y_m))
+    return Polygon(turned(ring, math.pi - heading_rad) + np.array([x_m, y_m]))
 
 
 def along(line: Points, spacing_m: float, *, start_m: float = 0.0, end_m: float = 0.0) -> tuple[Points, Points]:

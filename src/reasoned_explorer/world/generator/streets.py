@@ -19,9 +19,11 @@ Warp = Callable[[Points], Points]
 #: A crossing: its middle, the unit direction of the street away from the junction, half the carriageway, metres.
 Crossing = tuple[Points, Points, float]
 
-_FIRST = ("Linden", "Harbour", "Mill", "Station", "Chapel", "Market", "Orchard", "Queen", "Bishop", "Forge", "River",
-          "Garden", "School", "Castle", "Maple", "Quarry", "Abbey", "Tanner", "Weaver", "Bridge", "North", "South",
-          "Alder", "Beacon", "Cooper", "Dove", "Elm", "Ferry", "Granary", "Hazel", "Ivy", "Juniper", "Kiln", "Lark")  # fmt: skip
+_FIRST = (
+    *("Linden", "Harbour", "Mill", "Station", "Chapel", "Market", "Orchard", "Queen", "Bishop", "Forge", "River"),
+    *("Garden", "School", "Castle", "Maple", "Quarry", "Abbey", "Tanner", "Weaver", "Bridge", "North", "South"),
+    *("Alder", "Beacon", "Cooper", "Dove", "Elm", "Ferry", "Granary", "Hazel", "Ivy", "Juniper", "Kiln", "Lark"),
+)
 _LAST = ("Street", "Street", "Street", "Road", "Lane", "Row")
 
 #: Widths by kind: carriageway and each pavement, metres; typical of European towns (assumed).
@@ -41,18 +43,25 @@ def street_name(rng: Generator) -> str:
 
 
 def add_street(
-    sketch: Sketch, rng: Generator, line: Points, kind: str, *, within: Polygon | None = None, trees: float | None = None
+    sketch: Sketch,
+    rng: Generator,
+    line: Points,
+    kind: str,
+    *,
+    within: Polygon | None = None,
+    trees: float | None = None,
 ) -> list[Street]:
     """Draw a street, cut to an area, and return its pieces."""
     road, pavement = WIDTHS_M[kind]
-    pieces: list[Street] = []
     name = street_name(rng)
     parking = kind in ("residential", "secondary", "living_street") and rng.random() < 0.85
     lined = {"primary": 0.9, "secondary": 0.7, "residential": 0.45, "living_street": 0.5, "pedestrian": 0.5}
     spacing = float(rng.uniform(8.0, 13.0)) if rng.random() < lined.get(kind, 0.0) else 0.0
     cut = shapely.intersection(LineString(line), sketch.box if within is None else within)
-    for part in lines_of(shapely.line_merge(cut)):
-        pieces.append(Street(part, kind, road, pavement, parking, spacing if trees is None else trees, name))
+    pieces = [
+        Street(part, kind, road, pavement, parking, spacing if trees is None else trees, name)
+        for part in lines_of(shapely.line_merge(cut))
+    ]
     sketch.streets.extend(pieces)
     return pieces
 

@@ -33,14 +33,14 @@ def fill_district(sketch: Sketch, zone: Zone) -> None:
 def fill_town(sketch: Sketch) -> None:
     """Fill the world with a shore in the south, an old town in the middle and districts around it."""
     rng = sketch.rng("town")
-    min_x, min_y, max_x, max_y = sketch.box.bounds
+    min_x, min_y, max_x, _ = sketch.box.bounds
     size = max_x - min_x
     count = max(2, round(size / 260.0))
     shore = size >= 380.0
     deep = float(rng.uniform(0.24, 0.3)) * size if shore else 0.0
     us = even_ticks(rng, size, size / count)
     vs = even_ticks(rng, size - deep, (size - deep) / max(1, count - 1 if shore else count))
-    nodes = grid_nodes(rng, us, vs + deep, lambda points: points + (min_x, min_y), size * 0.022, frame=True)
+    nodes = grid_nodes(rng, us, vs + deep, lambda points: points + np.array([min_x, min_y]), size * 0.022, frame=True)
     # The frame lies on the border of the world: only the lines inside are streets.
     first = len(sketch.streets)
     for row in range(0 if shore else 1, len(vs) - 1):

@@ -17,9 +17,7 @@ _KERB_PITCH_M = 5.9
 _BAY_M = (2.6, 5.2)
 
 
-def park_cars(
-    sketch: Sketch, plan: GroundPlan, crossings: list[Crossing]
-) -> tuple[Points, NDArray[np.float64]]:
+def park_cars(sketch: Sketch, plan: GroundPlan, crossings: list[Crossing]) -> tuple[Points, NDArray[np.float64]]:
     """Return where cars stand, shape (n, 2), and where they head, compass radians."""
     spots, ways = [], []
     for index, street in enumerate(sketch.streets):

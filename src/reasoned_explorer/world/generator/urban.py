@@ -8,7 +8,7 @@ from numpy.random import Generator
 from shapely import LineString, Polygon
 
 from reasoned_explorer.world.generator.blocks import Fabric, blocks_between, fill_blocks, perimeter_block
-from reasoned_explorer.world.generator.shapes import Points, along, blob, left_of, polygons_of, smooth
+from reasoned_explorer.world.generator.shapes import Points, along, blob, polygons_of, smooth
 from reasoned_explorer.world.generator.sketch import Footprint, Sketch, Street
 from reasoned_explorer.world.generator.streets import (
     Warp,
@@ -88,9 +88,7 @@ def fill_plaza(sketch: Sketch, rng: Generator, cell: Polygon, area: Polygon, *, 
     _furnish_square(sketch, rng, square)
 
 
-def _square_in_grid(
-    sketch: Sketch, rng: Generator, cell: Polygon, *, framed: bool
-) -> tuple[Polygon, list[Street]]:
+def _square_in_grid(sketch: Sketch, rng: Generator, cell: Polygon, *, framed: bool) -> tuple[Polygon, list[Street]]:
     """Draw an old town's crooked grid with a few of its middle blocks left free for a square."""
     min_x, min_y, max_x, max_y = cell.bounds
     width, height = max_x - min_x, max_y - min_y
@@ -108,8 +106,8 @@ def _square_in_grid(
     if width < 260.0:
         across = 1
     middles = (nodes[:-across, :-up] + nodes[across:, up:]) / 2
-    i, j = np.unravel_index(int(np.argmin(np.hypot(*(middles - centre).transpose(2, 0, 1)))), middles.shape[:2])
-    i, j = int(i), int(j)
+    found = np.unravel_index(int(np.argmin(np.hypot(*(middles - centre).transpose(2, 0, 1)))), middles.shape[:2])
+    i, j = int(found[0]), int(found[1])
     south, north = nodes[i : i + across + 1, j], nodes[i : i + across + 1, j + up][::-1]
     east, west = nodes[i + across, j + 1 : j + up], nodes[i, j + 1 : j + up][::-1]
     square = shapely.buffer(Polygon(np.vstack([south, east, north, west])), 3.5, join_style="mitre")
@@ -204,7 +202,7 @@ def fill_waterfront(sketch: Sketch, rng: Generator, cell: Polygon, area: Polygon
     fabric = Fabric("waterfront", (4, 8), squares=0.06, gardens=0.1, carparks=0.05, landmarks=0.05, towers=0.06)
     fill_blocks(sketch, rng, blocks_between(inland, sketch.beds(streets)), fabric)
     _piers(sketch, rng, cell, warp, width)
-    _shore_features(sketch, rng, band, warp, (width, walk, green))
+    _shore_features(sketch, rng, warp, (width, walk, green))
 
 
 def _piers(sketch: Sketch, rng: Generator, cell: Polygon, warp: Warp, width: float) -> None:
@@ -221,9 +219,7 @@ def _piers(sketch: Sketch, rng: Generator, cell: Polygon, warp: Warp, width: flo
         sketch.lay(Ground.PAVEMENT, shapely.intersection(deck, cell), "pier")
 
 
-def _shore_features(
-    sketch: Sketch, rng: Generator, band: object, warp: Warp, sizes: tuple[float, float, float]
-) -> None:
+def _shore_features(sketch: Sketch, rng: Generator, warp: Warp, sizes: tuple[float, float, float]) -> None:
     """Put a beach, a pavilion with a terrace and flagpoles at the shore."""
     width, walk, green = sizes
     u = float(rng.uniform(0.2, 0.8)) * width
@@ -241,10 +237,3 @@ def _shore_features(
     for offset in (-9.0, -6.0, 6.0, 9.0):
         fx, fy = warp(np.array([[u + offset, walk - 1.2]]))[0]
         sketch.put("flagpole", fx, fy)
-
-
-def street_side_points(line: Points, offset_m: float, spacing_m: float) -> tuple[Points, Points]:
-    """Return points on both sides of a line and the unit directions that point away from it."""
-    at, tangents = along(line, spacing_m)
-    normals = left_of(tangents)
-    return np.vstack([at + offset_m * normals, at - offset_m * normals]), np.vstack([normals, -normals])

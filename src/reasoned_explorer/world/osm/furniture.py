@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from reasoned_explorer.world.osm.features import NODE, Feature
 from reasoned_explorer.world.osm.paths import PathIndex
 from reasoned_explorer.world.osm.shapes import clip, lines_of, polygons_of, ring_of
 from reasoned_explorer.world.osm.tags import (
+    CLASS_KEYS,
     Tags,
     attributes_of,
     class_of,
@@ -35,6 +36,7 @@ _AT_THE_WALL_M = 2.0
 _DOORSTEP_M = 0.5
 # A mapped door counts as a place's own where it is at most this much farther off than the nearest wall to a street.
 _DOOR_DETOUR_M = 20.0
+_MOST_HOUSES_DEEP = 6
 # What stands at most this far inside a wall on the map hangs on it; its middle goes this far before it.
 _INSIDE_THE_WALL_M = 1.0
 _WALL_GAP_M = 0.3
@@ -80,22 +82,29 @@ def objects_of(
     counts = {"underground or indoor objects dropped": 0, "objects inside buildings dropped": 0,
               "objects moved out of walls": 0}  # fmt: skip
     drafts: list[_Draft] = []
-    for feature in (*points, *lines, *areas):
-        draft = _draft(feature, seed, counts)
-        if draft is not None:
-            drafts += draft
-    # Shapes that reach over the border are cut there, so that their middle is inside.
-    drafts = [draft for draft in drafts if bounds.contains(draft.x_m, draft.y_m) or _pull_inside(draft, bounds)]
+    for feature in (*points, *_cut(lines, bounds), *_cut(areas, bounds)):
+        drafts += _draft(feature, seed, counts) or ()
     drafts.sort(key=lambda draft: (draft.feature.tags.get("natural") == "tree_row", draft.feature.kind))
     _set_beside_the_road(drafts, paths)
     drafts = _settle(drafts, buildings, counts)
     _go_to_the_doors(drafts, buildings, paths)
     _face(drafts, paths, seed)
-    objects = tuple(_finished(at, draft) for at, draft in enumerate(drafts) if bounds.contains(draft.x_m, draft.y_m))
-    if len(objects) < len(drafts):
-        kept = [draft for draft in drafts if bounds.contains(draft.x_m, draft.y_m)]
-        objects = tuple(_finished(at, draft) for at, draft in enumerate(kept))
+    kept = [draft for draft in drafts if bounds.contains(draft.x_m, draft.y_m)]
+    objects = tuple(_finished(at, draft) for at, draft in enumerate(kept))
     return ObjectSet(objects, {**counts, "objects": len(objects)})
+
+
+def _cut(features: Sequence[Feature], bounds: Bounds) -> list[Feature]:
+    """Return what can be objects, cut off at the bounds, so that their middles are inside."""
+    candidates = [one for one in features if not CLASS_KEYS.isdisjoint(one.tags)]
+    if not candidates:
+        return []
+    shapes = clip([one.shape for one in candidates], bounds)
+    return [
+        one if shape is one.shape else replace(one, shape=shape)
+        for one, shape in zip(candidates, shapes, strict=True)
+        if not shape.is_empty
+    ]
 
 
 def _draft(feature: Feature, seed: int, counts: dict[str, int]) -> list[_Draft] | None:
@@ -113,14 +122,15 @@ def _draft(feature: Feature, seed: int, counts: dict[str, int]) -> list[_Draft] 
     if feature.kind == NODE:
         x_m, y_m = feature.shape.x, feature.shape.y
         return [_Draft(feature, name, x_m, y_m, size_m, parse_direction_rad(tags.get("direction")))]
-    if feature.shape.geom_type in {"LineString", "LinearRing"}:
-        return None if kind == "area" else [_from_line(feature, name, size_m)]
+    if feature.shape.area == 0.0:
+        is_line = kind != "area" and feature.shape.length > 0.0
+        return [_from_line(feature, name, size_m)] if is_line else None
     return _from_area(feature, name, size_m)
 
 
 def _from_line(feature: Feature, name: str, size_m: tuple[float, float, float]) -> _Draft:
     """Make an object that is drawn as a line: as long as the line, in its middle, its front to the right of it."""
-    line = feature.shape
+    line = max(lines_of(feature.shape), key=lambda part: (part.length, part.bounds))
     middle = line.interpolate(0.5, normalized=True)
     start, end = shapely.get_coordinates(line)[[0, -1]]
     length_m = min(max(float(line.length), _MIN_SIZE_M), _MAX_SIZE_M)
@@ -205,17 +215,6 @@ def _ranged(text: str | None, default_m: float, low_m: float, high_m: float) -> 
     return value_m if value_m is not None and low_m <= value_m <= high_m else default_m
 
 
-def _pull_inside(draft: _Draft, bounds: Bounds) -> bool:
-    if draft.outline is None or draft.feature.kind == NODE:
-        return False
-    polygon = next(polygons_of(clip([shapely.Polygon(draft.outline)], bounds)[0], min_area_m2=1.0), None)
-    if polygon is None:
-        return False
-    point = polygon.representative_point()
-    draft.x_m, draft.y_m, draft.outline = point.x, point.y, ring_of(polygon.exterior)
-    return bounds.contains(draft.x_m, draft.y_m)
-
-
 def _set_beside_the_road(drafts: Sequence[_Draft], paths: PathIndex) -> None:
     """Move signals, signs and stops that are drawn on a road's centre line to its kerb, facing the traffic."""
     on_road = [draft for draft in drafts if draft.class_name in _ON_THE_ROAD and draft.feature.kind == NODE]
@@ -286,15 +285,33 @@ def _go_to_the_doors(drafts: Sequence[_Draft], buildings: BuildingSet, paths: Pa
 def _door(
     draft: _Draft, buildings: BuildingSet, target: tuple[float, float] | None
 ) -> tuple[float, float, float] | None:
-    footprint = buildings.footprints[draft.building]
-    here = shapely.Point(draft.x_m, draft.y_m)
-    wall = _wall_towards(here, footprint, target)
-    doors = buildings.buildings[draft.building].entrances
-    if len(doors):
-        away_m = np.hypot(doors[:, 0] - here.x, doors[:, 1] - here.y)
-        nearest = int(np.argmin(away_m))
-        if away_m[nearest] <= here.distance(wall) + _DOOR_DETOUR_M:
-            wall = shapely.Point(doors[nearest])
+    """Return the step before a place's door and the heading out of it, or None where no way leads out.
+
+    Where the wall that one comes to is shared with another building (or part of the same), the way leads on through it.
+    """
+    building, here = draft.building, shapely.Point(draft.x_m, draft.y_m)
+    for _ in range(_MOST_HOUSES_DEEP):
+        footprint = buildings.footprints[building]
+        wall = _wall_towards(here, footprint, target)
+        doors = buildings.buildings[building].entrances
+        steps = [_step_before(wall, footprint)]
+        if len(doors):
+            away_m = np.hypot(doors[:, 0] - here.x, doors[:, 1] - here.y)
+            nearest = int(np.argmin(away_m))
+            if away_m[nearest] <= here.distance(wall) + _DOOR_DETOUR_M:
+                steps.insert(0, _step_before(shapely.Point(doors[nearest]), footprint))
+        outside = [step for step in steps if step is not None]
+        if not outside:
+            return None
+        others = buildings.containing(shapely.points([step[:2] for step in outside])).tolist()
+        for step, other in zip(outside, others, strict=True):
+            if other < 0:
+                return step
+        building, here = others[-1], shapely.Point(outside[-1][:2])
+    return None
+
+
+def _step_before(wall: Any, footprint: Any) -> tuple[float, float, float] | None:
     outward_rad = _outward_rad(wall, footprint)
     if outward_rad is None:
         return None

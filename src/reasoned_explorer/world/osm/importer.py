@@ -25,6 +25,7 @@ ATTRIBUTION = "© OpenStreetMap contributors, ODbL 1.0"
 #: Nothing larger than this is imported, km².
 MAX_AREA_KM2 = 25.0
 _MIN_SIDE_M = 10.0
+_RIM_DEG = 1e-4
 _M_PER_DEG = 111_195.0
 _CROP = "pass a smaller bbox=(lon0, lat0, lon1, lat1)"
 _BBOX = "(lon0, lat0, lon1, lat1) in degrees, west before east and south before north"
@@ -76,7 +77,7 @@ def import_osm_with_report(
     warnings: list[str] = []
     if bbox is None:
         bbox = _whole(extract, file, warnings)
-    origin, bounds = _frame(bbox)
+    origin, bounds = frame_of(bbox)
     features = features_of(extract, origin, bounds)
     if not (features.points or features.lines or features.areas):
         raise WorldError(
@@ -188,7 +189,11 @@ def _whole(extract: Extract, file: Path, warnings: list[str]) -> BoxDeg:
 
 def _extent(extract: Extract) -> BoxDeg | None:
     points = [(node.lon_deg, node.lat_deg) for node in extract.nodes]
-    return _box_around(points, extract.way_lines)
+    box = _box_around(points, extract.way_lines)
+    if box is None:
+        return None
+    # What lies on the very edge shall be inside.
+    return box[0] - _RIM_DEG, box[1] - _RIM_DEG, box[2] + _RIM_DEG, box[3] + _RIM_DEG
 
 
 def _built_up(extract: Extract) -> BoxDeg | None:
@@ -216,7 +221,7 @@ def _box_around(points: list[tuple[float, float]], lines: object) -> BoxDeg | No
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
 
-def _frame(box: BoxDeg) -> tuple[GeoOrigin, Bounds]:
+def frame_of(box: BoxDeg) -> tuple[GeoOrigin, Bounds]:
     """Return the origin in the middle of a bbox, and the bounds: the rectangle that is as wide as its middle."""
     lon0, lat0, lon1, lat1 = box
     origin = GeoOrigin(lat_deg=(lat0 + lat1) / 2.0, lon_deg=(lon0 + lon1) / 2.0)

@@ -154,17 +154,17 @@ def class_of(tags: Tags, *, is_node: bool) -> str | None:
 
 
 def attributes_of(tags: Tags) -> dict[str, str]:
-    """Return the attributes that are kept: text as data, printable, at most 80 characters each."""
-    kept = {}
-    for key in KEPT_ATTRIBUTES:
-        value = clean_text(tags.get(key, ""))
-        if value:
-            kept[key] = value
-    if "fire_hydrant:type" in tags:
-        kept["type"] = clean_text(tags["fire_hydrant:type"])
-    return kept
+    """Return the attributes that are kept: text as data, printable, at most 80 characters each.
+
+    A hydrant's ``fire_hydrant:type`` is kept as ``type``: ``underground`` ones are lids in the ground.
+    """
+    kept = {key: clean_text(tags[key]) for key in KEPT_ATTRIBUTES if key in tags}
+    kept["type"] = clean_text(tags.get("fire_hydrant:type", ""))
+    return {key: value for key, value in kept.items() if value}
 
 
 def clean_text(text: str) -> str:
     """Return a text from the map without control characters, at most 80 characters long."""
-    return "".join(sign if sign.isprintable() else " " for sign in text).strip()[:_ATTRIBUTE_LENGTH].strip()
+    if not text.isprintable():
+        text = "".join(sign if sign.isprintable() else " " for sign in text)
+    return text.strip()[:_ATTRIBUTE_LENGTH].strip()

@@ -1,0 +1,20 @@
+"""The captioners that a person can pick by name. A factory takes a `CaptionerContext` and returns a `Captioner`."""
+
+from reasoned_explorer.registry import Entry, Registry
+
+CAPTIONERS = Registry(
+    "captioner",
+    "captioners",
+    (
+        Entry(
+            "perfect",
+            "reasoned_explorer.simulation.captioner:perfect",
+            "simulated: names everything that can be made out, where it is",
+        ),
+        Entry(
+            "noisy",
+            "reasoned_explorer.simulation.captioner:noisy",
+            "simulated: misses, imagines, misplaces and confuses at assumed rates",
+        ),
+    ),
+)

@@ -1,0 +1,210 @@
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from reasoned_explorer.model import GoalError
+from reasoned_explorer.task.catalogue import goals
+from reasoned_explorer.task.goal_spec import AWAY_M, NEAR_M, Relation
+from reasoned_explorer.task.reading import read_goal
+from reasoned_explorer.world.taxonomy import OBJECT_CLASSES, Ground
+
+
+def only_condition(text):
+    conditions = {condition for item in read_goal(text).sought for condition in item.conditions}
+    assert len(conditions) == 1
+    return conditions.pop()
+
+
+@pytest.mark.parametrize(
+    ("text", "class_name"),
+    [
+        ("Find me a fountain", "fountain"),
+        ("find a rubbish bin!", "waste_basket"),
+        ("FIRE HYDRANT", "fire_hydrant"),
+        ("Where are the nearest benches?", "bench"),
+        ("could you please find me an ATM", "atm"),
+        ("Take me to the café", "cafe"),
+        ("I’m looking for a children’s playground", "playground"),
+    ],
+)
+def test_a_noun_is_an_object_of_level_1(text, class_name):
+    spec = read_goal(text)
+    assert (spec.level, spec.class_names) == (1, (class_name,))
+
+
+@pytest.mark.parametrize("item", OBJECT_CLASSES.values(), ids=lambda item: item.name)
+def test_every_class_can_be_asked_for_by_its_own_name(item):
+    for said in (item.noun, item.plural):
+        assert item.name in read_goal(f"Find me {said}").class_names
+
+
+@pytest.mark.parametrize(
+    ("text", "relation", "classes", "distance_m", "negated"),
+    [
+        ("a bench near a trash can", Relation.NEAR, ("waste_basket",), NEAR_M, False),
+        ("a bench with a fountain next to it", Relation.NEAR, ("fountain",), NEAR_M, False),
+        ("a bench away from the fountain", Relation.NEAR, ("fountain",), AWAY_M, True),
+        ("a bench without a trash can nearby", Relation.NEAR, ("waste_basket",), NEAR_M, True),
+        ("a bench within 12 m of a fountain", Relation.NEAR, ("fountain",), 12.0, False),
+        ("a bench less than 8.5 metres from a fountain", Relation.NEAR, ("fountain",), 8.5, False),
+        ("a bench more than 20m from a bus stop", Relation.NEAR, ("bus_stop",), 20.0, True),
+        ("a bench beneath a tree", Relation.UNDER, ("tree",), NEAR_M, False),
+        ("near a fountain, find me a bench", Relation.NEAR, ("fountain",), NEAR_M, False),
+        ("a bench near a kiosk or a cafe", Relation.NEAR, ("cafe", "kiosk"), NEAR_M, False),
+    ],
+)
+def test_a_relation_is_a_condition_of_level_2(text, relation, classes, distance_m, negated):
+    condition = only_condition(text)
+    assert (condition.relation, condition.classes) == (relation, classes)
+    assert (condition.distance_m, condition.negated) == (distance_m, negated)
+    assert read_goal(text).level == 2
+
+
+def test_two_relations_must_both_hold():
+    (item,) = read_goal("a bench under a tree and near a fountain and a kiosk").sought
+    assert [c.classes for c in item.conditions] == [("tree",), ("fountain",), ("kiosk",)]
+
+
+def test_not_on_the_grass_is_about_the_bench_or_the_way_by_its_place():
+    assert only_condition("a bench not on the grass").negated
+    assert read_goal("find a bench, not on the grass").shunned == {Ground.GRASS}
+
+
+@pytest.mark.parametrize(
+    ("text", "shunned"),
+    [
+        ("find a bench, avoid the grass", {Ground.GRASS}),
+        ("find a bench but do not walk on the road or the lawn", {Ground.ROAD, Ground.GRASS}),
+        ("find a bench without crossing the street", {Ground.ROAD}),
+        ("keep off the flower beds and find a bench", {Ground.GARDEN}),
+        ("never step on the grass and find me a bench", {Ground.GRASS}),
+        ("find a bench, but don't take the stairs", {Ground.STEPS}),
+    ],
+)
+def test_ground_to_keep_off(text, shunned):
+    spec = read_goal(text)
+    assert (spec.level, set(spec.shunned), set(spec.wanted)) == (3, shunned, set())
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Find me a fire hydrant, but stay on the road",
+        "stay on the road until you find a fire hydrant",
+        "find a hydrant without leaving the road",
+        "keep strictly to the street and look for a hydrant",
+    ],
+)
+def test_ground_to_stay_on(text):
+    spec = read_goal(text)
+    assert spec.class_names == ("fire_hydrant",)
+    assert spec.wanted == {Ground.ROAD, Ground.CYCLEWAY, Ground.PARKING}
+
+
+def test_a_narrower_word_takes_away_from_a_wider_one():
+    spec = read_goal("stay on the paths, but not on the steps, and find a bench")
+    assert Ground.STEPS not in spec.wanted
+    assert spec.shunned == {Ground.STEPS}
+
+
+def test_an_abstraction_is_of_level_4_and_keeps_its_conditions():
+    spec = read_goal("Find me somewhere to sit under a tree, but avoid the road")
+    assert (spec.level, spec.affordance, spec.shunned) == (4, "sit", {Ground.ROAD})
+    assert all(item.conditions[-1].classes == ("tree",) for item in spec.sought)
+
+
+def test_a_thing_named_for_a_purpose_is_graded_by_the_purpose():
+    spec = read_goal("find me a bench where I can take a nap")
+    assert {item.class_name for item in spec.sought} == {"bench"}
+    assert sorted(item.grade for item in spec.sought) == [1, 2]
+
+
+def test_a_quiet_bench_is_away_from_roads():
+    condition = only_condition("find me a quiet bench")
+    assert (condition.grounds, condition.distance_m, condition.negated) == ((Ground.ROAD,), 15.0, True)
+
+
+def test_a_tennis_court_is_a_pitch_with_an_attribute():
+    (item,) = read_goal("find a tennis court").sought
+    assert (item.class_name, item.attributes[0].key) == ("pitch", "sport")
+
+
+def test_a_thing_may_be_called_by_its_name():
+    (item,) = read_goal("Find me the fountain called Fischbrunnen, avoid the grass").sought
+    assert item.attributes[0].values == ("fischbrunnen",)
+
+
+def test_alternatives_are_all_sought():
+    assert read_goal("find a bench or a picnic table").class_names == ("bench", "picnic_table")
+
+
+def test_what_is_not_graded_is_told():
+    assert read_goal("find a red bench").unread == ("red",)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("", "empty"),
+        ("   ", "empty"),
+        ("?!", "nothing that the judge can recognise"),
+        ("asdf qwer", "nothing that the judge can recognise"),
+        ("find me a bencj", "did you mean bench"),
+        ("stay on the road", "nothing that the judge can recognise"),
+        ("find me a car park", "is ground"),
+        ("find a bench and a fountain", "several things"),
+        ("somewhere to eat and take a nap", "two things"),
+        ("a bench behind the church", "behind"),
+        ("a bench on the other side of the road", "not understood"),
+        ("a bench near a blorp", "'blorp' is not known"),
+        ("find a bench, avoid the lava", "is no ground"),
+        ("find a bench, keep away from the people", "is no ground"),
+        ("stay on the grass and avoid the grass and find a bench", "both to be kept to and to be avoided"),
+        ("a bench within 500 m of a tree", "up to 100 m"),
+        ("a bench under the road", "under ground"),
+        ("bench " * 80, "at most 300"),
+    ],
+)
+def test_what_cannot_be_graded_is_refused_with_the_reason(text, told):
+    with pytest.raises(GoalError) as caught:
+        read_goal(text)
+    assert told in str(caught.value)
+
+
+def test_several_faults_are_told_at_once():
+    with pytest.raises(GoalError) as caught:
+        read_goal("find a bench near a blorp, avoid the lava")
+    assert len(caught.value.faults) == 2
+
+
+def test_what_is_no_text_is_refused():
+    with pytest.raises(GoalError, match="it is int"):
+        read_goal(3)
+
+
+@settings(max_examples=100)
+@given(st.text(max_size=120))
+def test_any_text_is_read_or_refused(text):
+    try:
+        spec = read_goal(text)
+    except GoalError:
+        return
+    assert spec.class_names
+
+
+@settings(max_examples=100)
+@given(st.lists(st.sampled_from(sorted({w for g in goals() for s in g.sentences for w in s.split()})), max_size=14))
+def test_any_heap_of_known_words_is_read_or_refused(heap):
+    try:
+        spec = read_goal(" ".join(heap))
+    except GoalError:
+        return
+    assert spec.class_names
+    assert not spec.wanted & spec.shunned
+
+
+@settings(max_examples=50)
+@given(st.sampled_from([s for g in goals() for s in g.sentences]), st.sampled_from([str.upper, str.lower, str.title]))
+def test_case_and_spaces_do_not_matter(sentence, change):
+    there, here = read_goal(sentence), read_goal("  " + change(sentence).replace(" ", "   ") + " ")
+    assert (there.sought, there.wanted, there.shunned) == (here.sought, here.wanted, here.shunned)
