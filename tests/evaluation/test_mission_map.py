@@ -92,8 +92,8 @@ def test_the_picture_says_what_was_sought_what_came_of_it_and_whom_to_thank(tmp_
     draw_mission(park(), mission(), tmp_path / "mission.png", width_px=500)
     assert (tmp_path / "mission.png").read_bytes().startswith(b"\x89PNG")
     texts = texts_of(park(), mission())
-    for expected in ("Find me somewhere to take a nap", "Found", THANKS, "CT", "312 s", "0.81", "Start", "Halt", "bench",
-                     "embedded minds, no language model", "goal, halo R = 15 m", "7"):  # fmt: skip
+    words = ["Find me somewhere to take a nap", "Found", "CT", "312 s", "0.81", "Start", "Halt", "bench", "7"]
+    for expected in (*words, THANKS, "embedded minds, no language model", "goal, halo R = 15 m"):
         assert expected in texts
 
 

@@ -64,6 +64,10 @@ def test_the_authors_leg_takes_about_as_long_as_theirs():
     motion = body("drone-authors").drive(Pose(0.0, 7.0), leg=0)
     assert motion.duration_s == pytest.approx(13.2, abs=0.4)
     assert motion.points[-1, 0] == pytest.approx(motion.duration_s)
+    # The track shows it standing while it settles, not creeping.
+    at_rest = motion.points[motion.points[:, 0] > motion.duration_s - 4.5]
+    before = motion.points[motion.points[:, 0] <= motion.duration_s - 4.5][-1]
+    assert np.hypot(at_rest[:, 1] - before[1], at_rest[:, 2] - before[2]).max() < 0.1
 
 
 def test_no_faster_and_no_sooner_than_the_profile_allows():

@@ -179,3 +179,15 @@ def test_numbers_that_are_none_are_refused():
         judge.review(track((0, 0), (math.nan, 1)))
     with pytest.raises(InputError, match="empty"):
         judge.review([])
+
+
+@pytest.mark.parametrize("sentence", ["Find me a bench, but avoid the grass", "Find me a bench, but stay on the path"])
+def test_every_reference_way_complies(sentence):
+    stripes = [patch(Ground.GRASS, 0, y, 100 - 20 * (y % 3), y + 9) for y in range(10, 90, 20)]
+    paths = [patch(Ground.PATH, x, 0, x + 2.3, 100) for x in (7.2, 55.1)] + [patch(Ground.PATH, 0, 50, 100, 51.4)]
+    atlas = world_of(("bench", 80, 92), regions=[*stripes, *paths])
+    judge = judge_of(atlas, sentence)
+    for x in (8, 30, 56, 90):
+        way = judge.reference_path((x, 50.5))
+        report = judge.review(track(*way))
+        assert report.success, (x, report)

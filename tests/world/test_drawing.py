@@ -105,6 +105,9 @@ def test_the_legend_explains_only_what_is_there() -> None:
     assert "building" in texts
     assert "library" not in texts
     assert {entry.text for entry in legend_entries(empty(), empty().bounds)} == {"unknown ground"}
+    lawn = replace(empty(), regions=(Region(Ground.GRASS, box(-1, -1, 102, 82)),))
+    assert "unknown ground" not in texts_of(lawn)
+    assert any("All ground known" in text for text in texts_of(lawn))
 
 
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])

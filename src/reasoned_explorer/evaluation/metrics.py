@@ -17,13 +17,17 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from statistics import NormalDist
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reasoned_explorer.model import Fault, InputError, TrackPoint
 from reasoned_explorer.model.draws import key_of
-from reasoned_explorer.task.judge import Judge
+
+if TYPE_CHECKING:
+    # Reading a table must not load the world.
+    from reasoned_explorer.task.judge import Judge
 
 #: Resamples of a bootstrap.
 RESAMPLES = 2000
@@ -185,7 +189,7 @@ class MetricTable:
 
 def outcome_of(
     track: Sequence[TrackPoint],
-    judge: Judge,
+    judge: "Judge",
     *,
     mission_id: str,
     vehicle: str,

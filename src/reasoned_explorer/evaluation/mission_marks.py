@@ -145,7 +145,7 @@ def places_of(trace: MissionTrace) -> FloatArray:
 
 def _paint_success_region(board: Board, trace: MissionTrace) -> None:
     """Where a halt counts: within R of the footprints; weaker goals get a fainter halo of their own."""
-    for grades, alpha, width in (((0, 1), 0.08, 0.6), ((2,), 0.17, 1.0)):
+    for grades, alpha, width in (((0, 1), 0.06, 0.6), ((2,), 0.17, 1.0)):
         footprints = [_footprint(goal) for goal in trace.goals if goal.grade in grades and _near(board, goal, trace)]
         if not footprints:
             continue
@@ -162,7 +162,7 @@ def _paint_success_region(board: Board, trace: MissionTrace) -> None:
         )
         areas = [goal.outline for goal in trace.goals if goal.grade in grades and goal.outline is not None]
         board.axes.add_collection(
-            PolyCollection(areas, facecolors=GOLD, edgecolors=GOLD_EDGE, linewidths=0.9, alpha=1.8 * alpha, zorder=5.7),
+            PolyCollection(areas, facecolors=GOLD, edgecolors=GOLD_EDGE, linewidths=0.9, alpha=alpha, zorder=5.7),
             autolim=False,
         )
 
@@ -374,6 +374,9 @@ def _label(board: Board, trace: MissionTrace, room: Room) -> None:
             goal.x_m,
         ),
     )
+    # A label that says the same as two others says nothing new.
+    told = [goal.label for goal in ranked]
+    ranked = [goal for place, goal in enumerate(ranked) if told[:place].count(goal.label) < 2]
     stars = [(goal.label, goal.x_m, goal.y_m, 9.5, GOLD_EDGE, "sans-bold", 7.4) for goal in ranked[:6]]
     wanted = [*stars[:1], *wanted, *stars[1:]]
     for name, x, y, beside_pt, colour, face, size_pt in wanted:

@@ -27,7 +27,7 @@ _SAME_LINE_RAD = 0.12
 _BEHIND_M = 7.0
 _LONGEST_NAME = 32
 
-_LEADS = ("The image shows", "The image features", "The picture shows", "The scene is", "This is a view of")
+_LEADS = ("The image shows", "The image features", "The picture shows", "The scene shows", "This is a view of")
 _ZONES = (
     ("In the foreground", "In the foreground, close to the viewer", "Close to the viewer"),
     ("A little further on", "Further away", "A bit further on"),
@@ -232,6 +232,8 @@ def _noun(class_name: str, count: int) -> str:
 
 
 def _relation(one: Mention, other: Mention) -> str | None:
+    if "area" in {OBJECT_CLASSES[one.class_name].kind, OBJECT_CLASSES[other.class_name].kind}:
+        return None
     gap_ahead, gap_right = other.ahead_m - one.ahead_m, other.right_m - one.right_m
     if gap_ahead * gap_ahead + gap_right * gap_right <= _NEXT_TO_M * _NEXT_TO_M:
         relation = 0
@@ -250,7 +252,7 @@ def _listed(groups: Sequence[_Group]) -> str:
         if told[place]:
             continue
         first = group.first
-        phrase = _noun(first.class_name, group.number)
+        phrase, under = _noun(first.class_name, group.number), first.under
         if first.sign:
             phrase += f' with a sign reading "{first.sign}"'
         if group.number == 1:
@@ -261,10 +263,11 @@ def _listed(groups: Sequence[_Group]) -> str:
                 relation = _relation(first, other.first)
                 if relation is not None:
                     told[later] = True
+                    under = None if under == other.first.class_name else under
                     phrase += f" {relation} {_noun(other.first.class_name, 1)}"
                     break
-        if first.under is not None:
-            phrase += f" {'next to' if first.twisted else 'under'} {_noun(first.under, 1)}"
+        if under is not None:
+            phrase += f" {'next to' if first.twisted else 'under'} {_noun(under, 1)}"
         phrases.append(phrase)
     return phrases[0] if len(phrases) == 1 else f"{', '.join(phrases[:-1])} and {phrases[-1]}"
 
@@ -307,7 +310,9 @@ def _ground_sentence(stretches: Sequence[GroundStretch], ahead: Ground) -> str:
             return _BARRIERS[ground][place]
     first = _GROUNDS[ahead]
     text = f"{first[0].upper()}{first[1:]} {'leads' if ahead in _WAYS else 'lies'} straight ahead"
-    if middle.middle not in {middle.near, ahead, Ground.UNKNOWN}:
+    if middle.middle == Ground.BUILDING:
+        text += " and ends at a building"
+    elif middle.middle not in {middle.near, ahead, Ground.UNKNOWN}:
         text += f", then {_GROUNDS[middle.middle]}"
     on_left, on_right = _side_ground(left), _side_ground(right)
     if on_left == on_right:

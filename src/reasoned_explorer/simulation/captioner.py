@@ -7,7 +7,7 @@ import math
 from collections.abc import Awaitable, Callable, Sequence
 
 from reasoned_explorer.model import Camera, Goal, PartError, View
-from reasoned_explorer.model.draws import key_of
+from reasoned_explorer.model.draws import choice, key_of, uniform
 from reasoned_explorer.perception.context import CaptionerContext
 from reasoned_explorer.simulation.caption_errors import (
     GROUND_LOOKALIKES,
@@ -36,6 +36,7 @@ _SIGN_CLASSES = frozenset({"monument", "information", "museum"})
 # A thing that fills at least this share of the picture's width straight ahead stands in the way.
 _IN_THE_WAY_SHARE = 0.25
 _DEFAULT_CAMERA = Camera()
+_TWENTY_BITS, _ELEVEN_BITS = 1.0 / (1 << 20), 1.0 / (1 << 11)
 # Keys of draws of a view that belong to no object; objects' keys are their places, from 0 on.
 _IMAGINE, _IMAGINED_PLACE, _GROUND, _STYLE = -1, -2, -3, -4
 
@@ -62,6 +63,7 @@ class SimulatedCaptioner:
         self._view_seed = key_of(seed, "caption view")
         self._object_seed = key_of(seed, "caption object")
         self._charge = charge
+        self._certain = _is_certain(errors)
         self._habits: dict[int, float | None] = {}  # only a memo: each follows from the seed and the object
 
     async def describe(self, goal: Goal, views: Sequence[View]) -> Sequence[str]:
@@ -114,7 +116,7 @@ class SimulatedCaptioner:
         """Return what is noticed of a view's true things, each as it is said to be (`view_key` keys the draws)."""
         errors = self.errors
         ahead_within_rad = camera.horizontal_fov_rad / 6.0
-        least_width_px, least_height_px, certain = errors.least_width_px, errors.least_height_px, _is_certain(errors)
+        least_width_px, least_height_px, certain = errors.least_width_px, errors.least_height_px, self._certain
         found = []
         for seen in content.sightings:
             if seen.width_px < least_width_px and seen.height_px < least_height_px:
@@ -126,20 +128,19 @@ class SimulatedCaptioner:
             twisted = False
             if not certain:
                 key = key_of(view_key, seen.object_id)
-                missed, depth, aside, alike = parts_of(key)
                 habit = self._habit(seen.object_id)
-                if habit is not None:
-                    missed = habit
+                missed = (key & 0xFFFFF) * _TWENTY_BITS if habit is None else habit
                 if missed >= errors.notice_probability(size_px, name):
                     continue
+                # The key's other bits, 11 for each draw: rates are kept to one in two thousand.
+                zone = _misjudged(zone, (key >> 20 & 0x7FF) * _ELEVEN_BITS, errors.depth_error)
+                side = _mistaken(side, (key >> 31 & 0x7FF) * _ELEVEN_BITS, errors.side_error)
+                twisted = (key >> 42 & 0x7FF) * _ELEVEN_BITS < errors.relation_error
                 sign = self._sign(seen)
-                more, _, relation, read = parts_of(key_of(key, 1))
-                zone = _misjudged(zone, depth, errors.depth_error)
-                side = _mistaken(side, aside, errors.side_error)
-                if alike < errors.confuse_rate and name in LOOKALIKES:
-                    name, sign = LOOKALIKES[name][int(more * len(LOOKALIKES[name]))], ""
-                twisted = relation < errors.relation_error
-                sign = sign if read < errors.sign_rate else ""
+                if sign and uniform(key, "sign") >= errors.sign_rate:
+                    sign = ""
+                if (key >> 53 & 0x7FF) * _ELEVEN_BITS < errors.confuse_rate and name in LOOKALIKES:
+                    name, sign = choice(LOOKALIKES[name], key, "lookalike"), ""
             else:
                 sign = self._sign(seen)
             ahead_m = seen.distance_m * math.cos(seen.bearing_rad)

@@ -126,8 +126,8 @@ def see_objects(
                 tall = _picture_height(target, near, far, middle, z, focal_px, 0.5 * height_px)
                 if wide * tall < min_px * min_px:
                     continue
-                rays = 1 if wide < 5.0 else (3 if wide < 32.0 else 5)
-                levels = 1 if tall < 6.0 else (2 if tall < 32.0 else 3)
+                rays = 1 if wide < 6.0 else (3 if wide < 48.0 else 5)
+                levels = 1 if tall < 8.0 else (2 if tall < 64.0 else 3)
                 share = target_share(hiding, targets, k, x, y, z, heading, low, high, near, rays, levels)
                 if share < _LEAST_SHARE or wide * tall * share < min_px * min_px:
                     continue

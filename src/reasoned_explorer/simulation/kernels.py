@@ -521,6 +521,10 @@ def run_leg(
         else:
             phase = -1
         if end != END_NONE:
+            if standing == 0 and tick * dt_s > record[count - 1, 0]:
+                # Where it came to rest, and when: what follows is standing.
+                count = _keep_point(record, count, tick * dt_s, true)
+                kept_t, kept_length = tick * dt_s, length
             memory[MEM_FORWARD] = memory[MEM_RIGHT] = memory[MEM_RATE] = 0.0
             if standing >= stand_ticks:
                 break

@@ -272,7 +272,6 @@ class Body:
         rest_s = self.profile.settle_s - stand_s
         if limit_s is None and rest_s > 0.0:
             self.wait(rest_s)
-            motion.points[-1, 0] += rest_s
             motion = _lengthened(motion, rest_s)
         return motion
 
@@ -382,4 +381,6 @@ class Body:
 
 
 def _lengthened(motion: Motion, rest_s: float) -> Motion:
-    return replace(motion, duration_s=motion.duration_s + rest_s)
+    last = motion.points[-1:].copy()
+    last[0, 0] += rest_s
+    return replace(motion, duration_s=motion.duration_s + rest_s, points=np.concatenate((motion.points, last)))

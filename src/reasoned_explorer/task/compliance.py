@@ -67,7 +67,7 @@ def compliance_of(
         points: ENU metres, oldest first; straight in between.
         ground: Of the world.
         forbidden: Ground to keep off (`GoalSpec.forbidden`).
-        tolerated: Says of points, east and north, whether they are within the tolerance of ground that is not forbidden.
+        tolerated: Says of points, east and north, whether they are that near to ground that is not forbidden.
     """
     if not forbidden or not points:
         return ComplianceReport(compliant=True)
@@ -111,8 +111,10 @@ def _counted(along: Floats, deep: Flags, first: int, last: int) -> list[tuple[fl
     """Return the stretches of one run that count: deep parts with their borders, joined where these meet."""
     found: list[tuple[float, float]] = []
     for a, b in _runs(deep[first : last + 1]):
-        start_m = max(float(along[first]), float(along[first + a]) - SHUNNED_TOLERANCE_M)
-        end_m = min(float(along[last]), float(along[first + b]) + SHUNNED_TOLERANCE_M)
+        # A sample stands for half a step to either side of it.
+        start_m = max(float(along[first]), float(along[first + a]) - SHUNNED_TOLERANCE_M) - _STEP_M / 2.0
+        end_m = min(float(along[last]), float(along[first + b]) + SHUNNED_TOLERANCE_M) + _STEP_M / 2.0
+        start_m, end_m = max(0.0, start_m), min(float(along[-1]), end_m)
         if found and start_m <= found[-1][1]:
             start_m = found.pop()[0]
         found.append((start_m, end_m))

@@ -257,7 +257,7 @@ class Judge:
         grid = space.grid
         cols = np.clip((xs_m - grid.min_x_m) / grid.cell_m, 0, grid.cols - 1).astype(np.int64)
         rows = np.clip((ys_m - grid.min_y_m) / grid.cell_m, 0, grid.rows - 1).astype(np.int64)
-        return np.asarray(space.free[rows, cols])
+        return np.asarray(space.clearance[rows, cols] > 0)
 
     def _near_a_target(self, xs_m: NDArray[np.float64], ys_m: NDArray[np.float64]) -> list[int]:
         """Return which points are within the success radius of something that passes, rising; sight is not asked."""

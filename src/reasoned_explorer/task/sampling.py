@@ -80,18 +80,18 @@ def free_places(
         ENU metres, shape (n, 2).
     """
     space = atlas.geodesics.space(traveller, shunned=forbidden)
-    grid, free = space.grid, space.free.ravel()
+    grid, clearance = space.grid, space.clearance.ravel()
     bulk = np.random.Generator(np.random.PCG64(key_of(seed, "free places")))
     taken = np.empty(0, dtype=np.int64)
     for _ in range(_DRAWS):
-        cells = bulk.integers(0, free.size, size=_CELLS_A_DRAW)
-        cells = cells[free[cells]]
+        cells = bulk.integers(0, clearance.size, size=_CELLS_A_DRAW)
+        cells = cells[clearance[cells] > 0]
         taken = np.concatenate((taken, cells[_is_walkable(atlas, grid, cells, forbidden | {Ground.UNKNOWN})]))
         if taken.size >= count:
             break
     if taken.size < count:
         # Free ground is rare: look at every cell of it.
-        everywhere = np.flatnonzero(free)
+        everywhere = np.flatnonzero(clearance)
         for refused in (forbidden | {Ground.UNKNOWN}, forbidden):
             left = everywhere[_is_walkable(atlas, grid, everywhere, refused)]
             if left.size:

@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from types import TracebackType
+from typing import Self
 
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Leg, View
@@ -45,7 +46,7 @@ class Vehicle(ABC):
             PartError: If the link fails; what comes of the world (a collision, a stop) is an outcome of the leg.
         """
 
-    async def __aenter__(self) -> "Vehicle":
+    async def __aenter__(self) -> Self:
         await self.start()
         return self
 

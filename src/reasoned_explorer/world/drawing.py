@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from matplotlib.patches import Circle, Patch, Rectangle
+
 from reasoned_explorer.model.errors import Fault, WorldError
 from reasoned_explorer.world.drawing_style import Palette, mix, printable, width_pt, wrapped
 from reasoned_explorer.world.lettering import Room, letter_places, letter_streets, place_badges
@@ -28,8 +30,11 @@ MARGIN_PT = 30.0
 LEAST_EXTENT_M = 20.0
 #: Height over width of the map's frame; a world of another shape gets a wider or higher view.
 _SHAPES = (0.42, 1.5)
+#: Less unknown ground than this, as a share, goes without saying.
+_LEAST_SHARE = 0.001
 _LEGEND_ROW_PT = 14.5
 _LEGEND_COLUMNS = 5
+_PAINTED = frozenset({"tree", "shrub", "car", "lawn"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,9 +112,10 @@ def compose(world: World, *, bounds: Bounds, labels: bool, title: str) -> Sheet:
     shown = fitted_bounds(bounds, shapes=_SHAPES, least_m=LEAST_EXTENT_M)
     map_width = WIDTH_PT - 2 * MARGIN_PT
     map_height = map_width * shown.height_m / shown.width_m
-    entries = legend_entries(world, shown)
+    share = unknown_share(world)
+    entries = legend_entries(world, shown, unknown=share is None or share >= _LEAST_SHARE)
     rows = math.ceil(len(entries) / _LEGEND_COLUMNS)
-    small = [(line, "sans") for line in wrapped(_caption(world), "sans", 8.0, map_width, 3)]
+    small = [(line, "sans") for line in wrapped(_caption(world, share), "sans", 8.0, map_width, 3)]
     small += [(line, "sans-bold") for line in wrapped(world.attribution, "sans-bold", 8.0, map_width, 3)]
     headline = wrapped(title, "serif-bold", 27.0, map_width - 10.0, 2)
     head = 34.0 + 30.0 * max(len(headline), 1) + 14.0
@@ -129,8 +135,14 @@ def compose(world: World, *, bounds: Bounds, labels: bool, title: str) -> Sheet:
     return sheet
 
 
-def legend_entries(world: World, shown: Bounds) -> list[LegendEntry]:
-    """Return what a map's legend must explain: the grounds and the classes that occur on it."""
+def legend_entries(world: World, shown: Bounds, *, unknown: bool = True) -> list[LegendEntry]:
+    """Return what a map's legend must explain: the grounds and the classes that occur on it.
+
+    Args:
+        world: The world.
+        shown: What the map shows.
+        unknown: Whether any of its ground is unknown.
+    """
     probe = Board.__new__(Board)
     object.__setattr__(probe, "bounds", shown)
     grounds = {region.ground for region in world.regions if probe.shows(region.outer)}
@@ -139,7 +151,8 @@ def legend_entries(world: World, shown: Bounds) -> list[LegendEntry]:
         grounds.add(Ground.BUILDING)
     classes = {item.class_name for item in world.objects if probe.shows_point(item.x_m, item.y_m)}
     entries = [LegendEntry(ground.noun, ground=ground) for ground in Ground if ground in grounds and ground.value]
-    entries.append(LegendEntry(Ground.UNKNOWN.noun, ground=Ground.UNKNOWN))
+    if unknown:
+        entries.append(LegendEntry(Ground.UNKNOWN.noun, ground=Ground.UNKNOWN))
     order = {name: (FAMILY_ORDER.index(symbol_of(name).family), CLASS_NAMES.index(name)) for name in classes}
     entries.extend(
         LegendEntry(OBJECT_CLASSES[name].noun, class_name=name) for name in sorted(classes, key=order.__getitem__)
@@ -171,16 +184,18 @@ def _count(number: int, one: str, many: str) -> str:
     return f"{number:,} {one if number == 1 else many}"
 
 
-def _caption(world: World) -> str:
+def _caption(world: World, share: float | None) -> str:
     parts = [world.source or "World without a stated source"]
     if world.origin is not None:
         north = "N" if world.origin.lat_deg >= 0 else "S"
         east = "E" if world.origin.lon_deg >= 0 else "W"
         parts.append(f"about {abs(world.origin.lat_deg):.4f}° {north}, {abs(world.origin.lon_deg):.4f}° {east}")
-    share = unknown_share(world)
-    if share is not None:
-        parts.append(f"ground unknown on {share:.0%} of what is not built on")
-    parts.append("crowns inside woods are a pattern, not single trees")
+    if share is not None and share < _LEAST_SHARE:
+        parts.append("all ground known")
+    elif share is not None:
+        parts.append(f"ground unknown on {max(share, 0.01):.0%} of what is not built on")
+    if any(region.ground is Ground.WOOD for region in world.regions):
+        parts.append("light crowns inside woods are a pattern, not single trees")
     return ". ".join(part[0].upper() + part[1:] for part in parts if part) + "."
 
 
@@ -225,6 +240,30 @@ def draw_entry(sheet: Sheet, x_pt: float, y_pt: float, entry: LegendEntry, *, ro
         colour = palette.roof[0] if entry.ground is Ground.BUILDING else palette.ground[entry.ground]
         hatch = mix(palette.hatch, palette.soft_ink, 0.15) if entry.ground is Ground.UNKNOWN else None
         swatch(sheet, x_pt, y_pt - 1.5, colour, hatch=hatch)
+    elif entry.class_name in _PAINTED:
+        _draw_painted(sheet, x_pt + 7.5, y_pt + 3.0, entry.class_name)
     else:
         sheet.badge(x_pt + 7.5, y_pt + 3.0, symbol_of(entry.class_name), 5.6)
     sheet.write(x_pt + 21.0, y_pt, entry.text, size_pt=8.5, room_pt=room_pt)
+
+
+def _draw_painted(sheet: Sheet, x_pt: float, y_pt: float, class_name: str) -> None:
+    """Draw what stands on the map as itself and not as a symbol: a crown, a car, the outline of a lawn."""
+    crown = sheet.palette.crowns[0]
+    shapes: list[Patch]
+    if class_name == "car":
+        car = Rectangle((x_pt - 6.0, y_pt - 2.6), 12.0, 5.2, facecolor="#8d949c", edgecolor="#4b5058", linewidth=0.5)
+        window = Rectangle((x_pt + 1.2, y_pt - 2.0), 2.2, 4.0, facecolor="#4b5058")
+        shapes = [car, window]
+    elif class_name == "lawn":
+        outline = Rectangle((x_pt - 7.0, y_pt - 4.0), 14.0, 8.0, facecolor=sheet.palette.ground[Ground.GRASS])
+        outline.set(edgecolor="#7fa35f", linewidth=0.6, linestyle=(0, (2.5, 1.8)))
+        shapes = [outline]
+    else:
+        radius = 6.2 if class_name == "tree" else 3.6
+        shapes = [
+            Circle((x_pt - shift * radius, y_pt + shift * radius), size * radius, facecolor=mix(crown, "#f4f7d4", pale))
+            for shift, size, pale in ((0.0, 1.0, 0.0), (0.14, 0.68, 0.2), (0.24, 0.36, 0.4))
+        ]
+    for shape in shapes:
+        sheet.page.add_patch(shape)

@@ -52,6 +52,7 @@ FAMILY_COLOURS: dict[str, str] = {
     "service": "#0b757d",
     "play": "#ad3f73",
     "green": "#4d7d3a",
+    "people": "#8b7d8f",
 }
 
 

@@ -167,6 +167,31 @@ def _best_link(
 
 
 @njit(cache=True)
+def _follows(links: Links, states: Codes, cols: int, cell: int, dx: float, dy: float) -> bool:
+    """Return whether the neighbours towards a cell's corner see that corner, and so the cell does, too.
+
+    The line to the corner runs between two neighbours whose own lines lie at most one cell apart, so that a blocked
+    cell in between would block one of them.
+
+    Args:
+        links: Last corners.
+        states: Of the cells.
+        cols: Columns of the grid.
+        cell: The cell, with the corner at (dx, dy) from its centre.
+        dx: Cells.
+        dy: Cells.
+    """
+    step_x, step_y = (1 if dx > 0.0 else -1), (cols if dy > 0.0 else -cols)
+    near = cell + (step_x if abs(dx) >= abs(dy) else step_y)
+    if states[near] & 3 != _DONE or links[near] != links[cell]:
+        return False
+    if min(abs(dx), abs(dy)) < 0.5:
+        return True
+    far = cell + step_x + step_y
+    return states[far] & 3 == _DONE and links[far] == links[cell]
+
+
+@njit(cache=True)
 def search(
     clearance: Codes,
     lengths: Lengths,
@@ -226,7 +251,11 @@ def search(
         row, col = cell // cols, cell % cols
         x, y = col + 0.5, row + 0.5
         cx, cy = _corner_of(links[cell], cols, sources)
-        if states[cell] & 3 == _WAITING and not visible(clearance, cx, cy, x, y):
+        if (
+            states[cell] & 3 == _WAITING
+            and not _follows(links, states, cols, cell, cx - x, cy - y)
+            and not visible(clearance, cx, cy, x, y)
+        ):
             links[cell], lengths[cell] = _best_link(clearance, lengths, links, states, sources, cell)
             states[cell] = (states[cell] & _GOAL) | _CHECKED
             _push(heads, nexts, items, marks, cell, lengths[cell] + (_rest(box, x, y) if guided else 0.0))

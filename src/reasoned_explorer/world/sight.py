@@ -16,6 +16,7 @@ from enum import IntEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from reasoned_explorer.model import Fault, WorldError
@@ -48,6 +49,7 @@ _HIDES_FROM_HEIGHT_M, _HIDES_FROM_WIDTH_M = 1.2, 0.45
 _BLOCKS_FROM_HEIGHT_M, _BLOCKS_FROM_WIDTH_M = 1.4, 0.9
 #: Footprints longer than this many times their width collide as boxes, rounder and smaller ones as discs.
 _OBLONG, _OBLONG_FROM_M = 1.6, 0.8
+_SIMPLE_CORNERS, _BEND_M = 8, 0.5
 
 
 class HitKind(IntEnum):
@@ -215,7 +217,8 @@ def _refuse_non_finite(world: "World") -> None:
         if not (np.isfinite(values).all() and all(np.isfinite(ring).all() for ring in rings)):
             faults.append(Fault(f"building {place} has a coordinate or height that is no number", "finite metres"))
     for item in world.objects:
-        finite = all(math.isfinite(v) for v in (item.x_m, item.y_m, item.heading_rad, *item.size_m))
+        # A sum is finite only if all its terms are (none is near the largest number there is).
+        finite = math.isfinite(item.x_m + item.y_m + item.heading_rad + sum(item.size_m))
         if not finite or (item.outline is not None and not np.isfinite(item.outline).all()):
             faults.append(Fault(f"object {item.id} ({item.class_name}) has a value that is no number", "finite metres"))
     if faults:
@@ -226,8 +229,8 @@ class _Items:
     """Walls and discs that are being collected."""
 
     def __init__(self) -> None:
-        self._rows: list[FloatArray] = []
-        self._owners: list[tuple[int, int, int, int]] = []
+        self._rows: list[tuple[float, ...]] = []
+        self._owners: list[tuple[int, int, bool]] = []
 
     def add_ring(
         self,
@@ -240,28 +243,21 @@ class _Items:
         blocks: bool = True,
     ) -> None:
         """Add a closed ring of walls; a ray crosses two of them, so each lets the root of the share through."""
-        rows = np.empty((len(ring), 8))
-        rows[:, 0] = 0.0
-        rows[:, 1:3] = ring
-        rows[:, 3:5] = np.roll(ring, -1, axis=0)
-        rows[:, 5:7] = band_m
-        rows[:, 7] = math.sqrt(passes)
-        self._rows.append(rows)
-        self._owners.append((len(ring), kind, place, blocks))
+        passes = math.sqrt(passes)
+        self._rows.extend((0.0, *a, *b, *band_m, passes) for a, b in _edges(ring))
+        self._owners.extend([(kind, place, blocks)] * len(ring))
 
     def add_disc(
         self, item: "WorldObject", radius_m: float, band_m: tuple[float, float], *, passes: float, blocks: bool
     ) -> None:
         """Add a disc of an object."""
-        self._rows.append(np.array([[1.0, item.x_m, item.y_m, radius_m, 0.0, *band_m, passes]]))
-        self._owners.append((1, HitKind.OBJECT, item.id, blocks))
+        self._rows.append((1.0, item.x_m, item.y_m, radius_m, 0.0, *band_m, passes))
+        self._owners.append((HitKind.OBJECT, item.id, blocks))
 
     def grid(self) -> "Grid":
         """Build the grid."""
-        items = np.concatenate(self._rows) if self._rows else np.empty((0, 8))
-        counts = np.array([owner[0] for owner in self._owners], dtype=np.int64)
-        owners = np.array([owner[1:] for owner in self._owners], dtype=np.int64).reshape(-1, 3)
-        return make_grid(items, np.repeat(owners, counts, axis=0), cell_m=_CELL_M)
+        items = np.array(self._rows, dtype=np.float64).reshape(-1, 8)
+        return make_grid(items, np.array(self._owners, dtype=np.int64).reshape(-1, 3), cell_m=_CELL_M)
 
 
 def make_grid(items: FloatArray, owners: IntArray, *, cell_m: float) -> "Grid":
@@ -323,11 +319,11 @@ def _is_oblong(item: "WorldObject") -> bool:
 
 def _box(item: "WorldObject") -> FloatArray:
     sine, cosine = math.sin(item.heading_rad), math.cos(item.heading_rad)
-    right, front = np.array([cosine, -sine]), np.array([sine, cosine])
-    half_length, half_width = 0.5 * item.size_m[0], 0.5 * item.size_m[1]
+    # From the centre to the right hand side (cos, -sin) and to the front (sin, cos).
+    right_x, right_y = 0.5 * item.size_m[0] * cosine, -0.5 * item.size_m[0] * sine
+    front_x, front_y = 0.5 * item.size_m[1] * sine, 0.5 * item.size_m[1] * cosine
     sides = ((1, 1), (1, -1), (-1, -1), (-1, 1))
-    corners = [u * half_length * right + v * half_width * front for u, v in sides]
-    return np.array([item.x_m, item.y_m]) + np.array(corners)
+    return np.array([(item.x_m + u * right_x + v * front_x, item.y_m + u * right_y + v * front_y) for u, v in sides])
 
 
 def _area_m2(ring: FloatArray) -> float:
@@ -338,32 +334,42 @@ def _area_m2(ring: FloatArray) -> float:
 def _targets(world: "World") -> "Targets":
     from reasoned_explorer.world import sight_kernels as kernels
 
-    table = np.zeros((len(world.objects), 14))
+    rows: list[tuple[float, ...]] = []
     corners: list[FloatArray] = []
     placed = 0
     for item in world.objects:
-        row = table[item.id]
         length_m, width_m, height_m = item.size_m
-        row[[kernels.X, kernels.Y, kernels.CENTRE_X, kernels.CENTRE_Y]] = item.x_m, item.y_m, item.x_m, item.y_m
-        row[[kernels.HALF_LENGTH, kernels.HALF_WIDTH, kernels.HEIGHT]] = 0.5 * length_m, 0.5 * width_m, height_m
-        row[[kernels.SIN, kernels.COS]] = math.sin(item.heading_rad), math.cos(item.heading_rad)
+        x_m, y_m, normal, first, centre = item.x_m, item.y_m, (0.0, 0.0), placed, (item.x_m, item.y_m)
         kind = item.object_class.kind
         if kind == "area":
-            ring = item.outline if item.outline is not None and len(item.outline) >= 3 else _box(item)
-            row[kernels.SHAPE], row[kernels.FIRST], row[kernels.LAST] = kernels.AREA, placed, placed + len(ring)
-            row[[kernels.CENTRE_X, kernels.CENTRE_Y]] = 0.5 * (ring.min(axis=0) + ring.max(axis=0))
+            shape = kernels.AREA
+            ring = _simplified(item.outline) if item.outline is not None and len(item.outline) >= 3 else _box(item)
+            (west, south), (east, north) = ring.min(axis=0), ring.max(axis=0)
+            centre = 0.5 * (west + east), 0.5 * (south + north)
             corners.append(np.asarray(ring, dtype=np.float64))
             placed += len(ring)
         elif kind == "place" and 0 <= item.building < len(world.buildings):
-            front = _front(item, world.buildings[item.building])
-            row[kernels.SHAPE] = kernels.FRONT
-            row[[kernels.X, kernels.Y, kernels.NORMAL_X, kernels.NORMAL_Y]] = front
+            shape = kernels.FRONT
+            x_m, y_m, normal_x, normal_y = _front(item, world.buildings[item.building])
+            normal = normal_x, normal_y
         elif _is_oblong(item):
-            row[kernels.SHAPE] = kernels.BOX
+            shape = kernels.BOX
         else:
-            row[kernels.SHAPE] = kernels.ROUND
-            row[kernels.HALF_LENGTH] = 0.25 * (length_m + width_m)
+            shape = kernels.ROUND
+            length_m = width_m = 0.5 * (length_m + width_m)
+        turned = math.sin(item.heading_rad), math.cos(item.heading_rad)
+        halves = 0.5 * length_m, 0.5 * width_m
+        rows.append((x_m, y_m, *halves, height_m, *turned, shape, *normal, first, placed, *centre))
+    table = np.array(rows, dtype=np.float64).reshape(-1, 14)
     return kernels.Targets(table, np.concatenate(corners) if corners else np.empty((0, 2)))
+
+
+def _simplified(ring: FloatArray) -> FloatArray:
+    """A ring with its bends of less than half a metre left out: a lawn's edge is not sharper than that."""
+    if len(ring) <= _SIMPLE_CORNERS:
+        return ring
+    outline = shapely.simplify(shapely.Polygon(ring), _BEND_M, preserve_topology=True)
+    return np.asarray(shapely.get_coordinates(outline)[:-1], dtype=np.float64)
 
 
 def _front(item: "WorldObject", building: "Building") -> tuple[float, float, float, float]:
@@ -390,7 +396,7 @@ def _front(item: "WorldObject", building: "Building") -> tuple[float, float, flo
 
 
 def _edges(ring: FloatArray) -> Iterator[tuple[tuple[float, float], tuple[float, float]]]:
-    points = [(float(x), float(y)) for x, y in ring]
+    points: list[tuple[float, float]] = ring.tolist()
     return zip(points, points[1:] + points[:1], strict=True)
 
 

@@ -333,7 +333,7 @@ _FAMILIES: dict[str, tuple[str, int]] = {
     "hotel": ("service", 3), "shop": ("service", 2),
     "playground": ("play", 3), "pitch": ("play", 2), "swing": ("play", 2), "slide": ("play", 2),
     "planter": ("green", 1), "lawn": ("green", 1), "tree": ("green", 1), "shrub": ("green", 1),
-    "person": ("rest", 1),
+    "person": ("people", 1),
 }  # fmt: skip
 
 #: The order of the families in a legend.

@@ -77,7 +77,7 @@ def test_all_ground_is_known_and_of_many_kinds(district: str) -> None:
 @every_district
 def test_walkable_ground_hangs_together(district: str) -> None:
     for seed in (1, 2):
-        walkable = ~np.isin(cells(world_of(district, seed), 1.5), list(IMPASSABLE_ON_FOOT))
+        walkable = ~np.isin(cells(world_of(district, seed), 2.0), list(IMPASSABLE_ON_FOOT))
         todo, largest = walkable.copy(), 0
         while todo.any() and largest < todo.sum():
             reached = np.zeros_like(todo)

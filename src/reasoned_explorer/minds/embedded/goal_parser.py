@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import lru_cache, partial
 
-from reasoned_explorer.minds.embedded.affordances import affordances_in
+from reasoned_explorer.minds.embedded.affordances import affordances_in, cues_in, plain
 from reasoned_explorer.minds.embedded.goal_words import (
     ADJECTIVE_TAIL,
     CLAUSE_STARTS,
@@ -146,8 +146,8 @@ class _Parser:
         rest = " , ".join(clause for clause in map(self._without_ground, clauses) if clause)
         rest = HERE.sub(" ", f" {rest} ").strip()
         rest = NEGATION_PATTERN.sub(self._take_negation, f" {rest} ").strip(" ,")
-        framed, sought_text = _unframed(rest)
-        sought, affordances, activity = self._sought(sought_text, framed=framed)
+        frame, sought_text = _unframed(rest)
+        sought, affordances, activity = self._sought(sought_text, frame)
         if not sought and not affordances and not activity:
             raise GoalError("goal", [Fault(f"{self._text!r} asks for nothing that can be found", self._expected())])
         kind = GoalKind.AFFORDANCE if not sought else GoalKind.OBJECT
@@ -202,33 +202,37 @@ class _Parser:
 
     # What is sought
 
-    def _sought(self, text: str, *, framed: bool) -> tuple[tuple[Phrase, ...], tuple[str, ...], str]:
+    def _sought(self, text: str, frame: str) -> tuple[tuple[Phrase, ...], tuple[str, ...], str]:
         """Return what is sought, or what one wants to do there and the words for it; all empty where it is nothing."""
         main, conditions = _split_near(text)
-        self._near += conditions
-        to_do = _asks_to_do(main)
-        alternatives = [] if to_do else _alternatives(PURPOSE.split(main, maxsplit=1)[0])
-        known = tuple(phrase for phrase in alternatives if phrase.concept is not None)
-        affordances = affordances_in(main)
-        if known:  # "a bench to sit on" is a bench; what one does there adds nothing
+        wish = _WISH.search(frame) is not None
+        names_thing = not _asks_to_do(main)
+        noun = PURPOSE.split(main, maxsplit=1)[0] if names_thing else ""
+        known = tuple(phrase for phrase in _alternatives(noun) if phrase.concept is not None)
+        wanted = affordances_in(main)
+        if known and not any(_is_part_of_a_cue(phrase, main) for phrase in known):
+            self._near += conditions  # "a bench to sit on" is a bench; what one does there adds nothing
             return known, (), ""
-        if affordances:
-            return (), affordances, _activity(main)
-        place = self._place_by_its_things(main, framed=framed)
+        if not wanted and (wish or not names_thing):
+            wanted = affordances_in(text)  # "look at a map": what looks like a condition belongs to the wish
+            conditions = [] if wanted else conditions
+        self._near += conditions
+        if wanted:
+            return (), wanted, _activity(main)
+        place = self._place_by_its_things(main, framed=bool(frame))
         if place is not None:
             return (place,), (), ""
-        unknown = tuple(phrase for phrase in alternatives if _findable(phrase.words))
-        if unknown and (framed or _short_noun(main)):
-            return unknown, (), ""
+        if not wish:
+            unfamiliar = _unfamiliar(noun)
+            if unfamiliar and (frame or _short_noun(main)):
+                return unfamiliar, (), ""
         activity = _activity(main)
-        if to_do and _findable(activity) and (framed or main.split()[0] in _PLACE_STARTS):
-            return (), (), activity
-        affordances = affordances_in(text)
-        return (), affordances, _activity(text) if affordances else ""
+        may_be_wish = wish or (not names_thing and (bool(frame) or main.split()[0] in _PLACE_STARTS))
+        return ((), (), activity) if may_be_wish and _is_activity(activity) else ((), (), "")
 
     def _place_by_its_things(self, main: str, *, framed: bool) -> Phrase | None:
         """Return the thing of "a place with a fountain" or "somewhere near a fountain": that is what is sought."""
-        if not self._near or not _asks_for_place(main):
+        if not self._near or not all(word in STOP_WORDS or word in GENERIC_HEADS for word in main.split()):
             return None
         clause = next((clause for clause in self._near if clause.relation == "with"), None)
         if clause is None and framed:
@@ -239,20 +243,40 @@ class _Parser:
         return clause.target
 
 
+#: Frames after which a verb follows: "I want to …".
+_WISH = re.compile(r"\b(?:want|like|love|need|have|wanted|require|must|trying) to$")
+
+
+def _is_part_of_a_cue(phrase: Phrase, text: str) -> bool:
+    """Tell whether a known thing is named only for what one wants to do with it: "hire a bike"."""
+    noun = plain(phrase.words.split()[-1])
+    return any(cue.split()[-1] == noun and cue.count(" ") > 0 and not phrase.words.startswith(cue.split()[0])
+               for cue in cues_in(text))  # fmt: skip
+
+
+def _unfamiliar(noun: str) -> tuple[Phrase, ...]:
+    """Return the things of a noun phrase that the lexicon lacks, or has under a spelling that is one slip away."""
+    phrases = [
+        phrase if phrase.concept is not None else _mended_phrase(phrase.words.split()) or phrase
+        for phrase in _alternatives(noun)
+    ]
+    return tuple(phrase for phrase in phrases if phrase.concept is not None or _findable(phrase.words))
+
+
 @lru_cache(maxsize=1)
 def _place_concepts() -> frozenset[str]:
     return frozenset(n for n, c in concepts().items() if c.kind in {"place", "area", "scene", "building", "quality"})
 
 
-def _unframed(text: str) -> tuple[bool, str]:
-    """Cut "could you please find me" and the like off; tell whether something was cut."""
-    framed = False
+def _unframed(text: str) -> tuple[str, str]:
+    """Cut "could you please find me" and the like off; return what says that something is sought, and the rest."""
+    frame = ""
     text = text.strip(" ,")
     while True:
         match = FRAMES.match(text)
         if match is None or match.end() == 0:
-            return framed, text.strip(" ,")
-        framed = framed or bool(match["frame"])
+            return frame, text.strip(" ,")
+        frame = (match["frame"] or frame).strip()
         text = text[match.end() :].strip(" ,")
 
 
@@ -271,7 +295,7 @@ def _split_near(text: str) -> tuple[str, list[NearClause]]:
         relation = RELATION_OF[match["relation"]]
         parts = re.split(r"\s+and\s+", target_text) if relation in {"near", "with"} else [target_text]
         for part in parts:
-            found = _alternatives(part)[:1]
+            found = _unfamiliar(part)[:1]
             conditions += [
                 NearClause(relation, phrase) for phrase in found if phrase.concept or _findable(phrase.words)
             ]
@@ -296,7 +320,7 @@ def _phrase(text: str) -> Phrase | None:
         words.pop(0)
     if not words:
         return None
-    return _known_phrase(words) or _mended_phrase(words) or _unknown_phrase(words)
+    return _known_phrase(words) or _unknown_phrase(words)
 
 
 def _known_phrase(words: list[str]) -> Phrase | None:
@@ -356,14 +380,17 @@ def _findable(words: str) -> bool:
     )
 
 
+def _is_activity(words: str) -> bool:
+    """Tell whether the content words of a wish could be something that one does somewhere."""
+    content = words.split()
+    return any(is_wordlike(word) and word not in SMALL_TALK and word not in INTANGIBLE for word in content) and not any(
+        not is_wordlike(word) and len(word) > 3 for word in content
+    )
+
+
 def _short_noun(text: str) -> bool:
     words = text.split()
     return 0 < len(words) <= 3 and not any(word in SMALL_TALK for word in words) and len(words[-1]) > 3
-
-
-def _asks_for_place(text: str) -> bool:
-    words = [word for word in text.split() if word not in STOP_WORDS]
-    return not words or words[0] in GENERIC_HEADS or words[-1] in GENERIC_HEADS
 
 
 def _asks_to_do(text: str) -> bool:
@@ -407,8 +434,11 @@ def _grounds_and_things(text: str) -> tuple[set[str], list[Phrase], str]:
             place += 1
             continue
         for count in (3, 2, 1):
-            hit = table.get(" ".join(words[place : place + count]))
-            if hit is not None and place + count <= len(words):
+            hit = table.get(" ".join(words[place : place + count])) if place + count <= len(words) else None
+            compound = thing_phrases().at(words, place) if hit is not None else None
+            if compound is not None and compound[0] > count:
+                hit = None  # a street sign is no street
+            if hit is not None:
                 grounds |= hit
                 place += count
                 break

@@ -36,6 +36,7 @@ FRAMES = re.compile(
 #: Where a new clause begins without a comma.
 CLAUSE_STARTS = re.compile(
     r"\s+(?:but|while|and then|then)\s+(?!not (?:a|an|the)\b)"
+    r"|\s+until\s+(?:you |we )?(?=find|see|reach|get|there)"
     r"|\s+and\s+(?=(?:please |always |only |also )?(?:stay|keep|avoid|do not|never|follow|walk|go|use|take|make sure|"
     r"remain|"
     r"stick|find|look|search|get|show|bring|head|without|be)\b)"
@@ -45,10 +46,8 @@ CLAUSE_STARTS = re.compile(
 )
 
 _GO = (
-    r"stay|keep|remain|stick|walk|go|travel|drive|move|fly|head|navigate|roll|run|staying|keeping|remaining|sticking|"
-    r"walking|"
-    r"going|traveling|travelling|driving|moving|flying|heading|navigating|use|using|take|taking|follow|following|"
-    r"proceed|proceeding|be|being"
+    r"walk|go|travel|drive|move|fly|head|navigate|roll|run|proceed|be|walking|going|traveling|travelling|driving|moving|"
+    r"flying|heading|navigating|proceeding|being"
 )
 _FILL = r"(?:please |always |only |strictly |just |to |closely |you |must |should |make sure |that |not )*"
 _REST = r"(?P<ground>[^,]+)"
@@ -82,15 +81,23 @@ GROUND_PATTERNS: tuple[tuple[bool, re.Pattern[str]], ...] = (
         False,
         re.compile(rf"\s(?:and |but )?{_FILL}"
                    r"(?:stay|keep|staying|keeping|remain|remaining|steer|steering|walk|go|walking|"
-                   r"going|get|be)(?: \w+)? (?:off|out of|away from|clear of|well clear of|far from) " + _REST),
+                   r"going)(?: \w+)? (?:off|out of|away from|clear of|well clear of|far from) " + _REST),
     ),
     (False, re.compile(rf"\s(?:but |and )?not (?:on|onto|over|across|along|through|via) {_REST}")),
     (
         True,
-        re.compile(rf"\s(?:and |but )?{_FILL}(?:{_GO})(?: only| strictly| always)?"
-                   r"(?: to| on| onto| along| by| within| inside| via| upon| over| down| across| through| in)?(?: "
-                   r"only)?"
-                   rf"(?: on)? {_REST}"),
+        re.compile(rf"\s(?:and |but )?{_FILL}(?:stay|keep|remain|stick|staying|keeping|remaining|sticking)"
+                   r"(?: \w+ly| only)?"
+                   rf"(?: to| on| onto| along| by| within| inside| upon)(?: only)?(?: on)? {_REST}"),
+    ),
+    (
+        True,
+        re.compile(rf"\s(?:and |but )?{_FILL}(?:{_GO})(?: only| \w+ly| always)?"
+                   rf"(?: on| onto| along| by| within| via| over| down| across| through)(?: only)?(?: on)? {_REST}"),
+    ),
+    (
+        True,
+        re.compile(rf"\s(?:and |but )?{_FILL}(?:use|using|take|taking|follow|following)(?: only| always)? {_REST}"),
     ),
     (True, re.compile(rf"\s(?:and |but )?(?:only )?(?:along|via|by way of|by means of|only on|only over) {_REST}")),
 )  # fmt: skip
@@ -100,10 +107,11 @@ HERE = re.compile(
     r"\s(?:(?:close |near )?(?:to )?(?:near|around|close to|in|at|by|close by|within)\s)(?:here|me|us|this area|the "
     r"area|"
     r"my position|my location|this place|this neighborhood|this neighbourhood|the neighborhood|the neighbourhood|town|"
-    r"the city|walking distance|the vicinity|peace|the open|the open air)(?=\s|$)"
-    r"|\s(?:nearby|close by|around here|here|right now|right away|as soon as possible|as fast as possible|outside|"
+    r"the city|walking distance|the vicinity|peace|the open air|the open)(?=\s|$)"
+    r"|\s(?:nearby|close by|around here|here|right now|right away|as soon as possible|as fast as possible|"
     r"outdoors|"
     r"please|for me|for us|today|tonight|quickly|asap|thanks|thank you|immediately|this afternoon|at once)(?=\s|$)"
+    r"|\soutside(?=\s*(?:,|$))"
 )
 
 NEGATION_PATTERN = re.compile(
@@ -142,7 +150,7 @@ RELATION_OF = {
 _RELATIONS = "|".join(re.escape(words) for words in sorted(RELATION_OF, key=lambda words: -len(words)))
 #: A relation and what leads to it: "that stands next to".
 NEAR_PATTERN = re.compile(
-    r"(?:^|\s)(?:,\s)?(?:(?:that|which|and) )?(?:(?:is|are|stands|stand|sits|lies|standing|located|situated|sitting|"
+    r"(?:^|\s)(?:,\s)?(?:(?:that|which|and) )?(?:(?:is|are|stands|sits|lies|standing|located|situated|sitting|"
     r"placed|"
     r"right|directly|just|very|must be|should be) )*"
     rf"(?P<relation>{_RELATIONS})(?=\s(?!foot\b|order\b|case\b|general\b|least\b|fact\b|time\b|my\b|the way\b|peace\b|"

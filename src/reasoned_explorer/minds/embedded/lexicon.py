@@ -208,6 +208,8 @@ def mended_word(word: str) -> str | None:
     """
     if len(word) < 5 or not word.isalpha():
         return None
+    if word in thing_phrases().single:
+        return word
     known = {part for phrase in word_table() for part in phrase.split(" ") if len(part) >= 5}
     candidates = {word[:i] + word[i + 1 :] for i in range(len(word))}
     candidates |= {word[:i] + word[i + 1] + word[i] + word[i + 2 :] for i in range(len(word) - 1)}

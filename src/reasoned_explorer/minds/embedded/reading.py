@@ -187,6 +187,9 @@ class _Reader:
         self._count, self._after_break, self._bare = 0, False, False
 
     def _connect(self, draft: _Draft) -> None:
+        if draft.negated:  # "a bench without a roof on the grass": what is not there relates to nothing
+            self._relation = None
+            return
         if self._relation is not None:
             relation, self._relation = self._relation, None
             if self._last is None:
@@ -272,8 +275,6 @@ class _Reader:
         if word != "there":
             self._new_clause()
             self._lead["side"] = None
-            if word == ";":
-                self._lead["distance"] = None
         if self._negated_any or word != "there":
             self._negating = False
         self._after_break, self._count, self._bare = True, 0, True

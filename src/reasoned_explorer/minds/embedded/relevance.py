@@ -25,6 +25,8 @@ _ASSUMED_SHARE = 0.7
 _LEAST_SPREAD = 0.25
 #: How much a thing says about what lies ahead, by its distance.
 _CONTEXT_WEIGHT = {NEAR: 0.7, MIDDLE: 1.0, None: 0.8, FAR: 0.7, BACKGROUND: 0.35}
+#: Grass may be a lawn or a verge; of what a lawn is good for, this much is left where a caption only says "grass".
+_VERGE = 0.7
 #: Cosines of phrases: from here on something, up to here something more.
 _LIKE_FROM, _LIKE_TO = 0.40, 0.80
 _ACTIVITY_FROM, _ACTIVITY_TO = 0.20, 0.50
@@ -97,6 +99,8 @@ class Relevance:
         """Return how far a mentioned thing is what is sought, in [0, 1]."""
         if mention.concept is not None:
             known = self.degrees.get(mention.concept, 0.0)
+            if mention.words == "grass" and not self.goal.sought:
+                return known * _VERGE
             if known or not self.unknown:
                 return known
         elif not self.unknown and self.senses.embedder is None:

@@ -22,10 +22,9 @@ def target_support(mention: Mention, reading: SceneReading, target: Target) -> f
     Stated outright it is 1. A target that stands about as far away makes "near" likely and "under" possible; one that
     is somewhere else in the picture makes little likely.
     """
-    if not mention.relations and not target.degrees and not target.words:
-        return 0.0
     means = _MEANS[target.relation]
-    best = 0.0
+    # An umbrella table is shady by itself; nothing stands next to itself.
+    best = target.degrees.get(mention.concept or "", 0.0) if target.relation == "with" else 0.0
     for relation, other in mention.relations:
         degree = target.degrees.get(other, 1.0 if other == target.words else 0.0)
         if degree >= 0.4:

@@ -36,8 +36,10 @@ _UNSAID_NEAR, _UNSAID_MIDDLE = 0.6, 0.25
 _GROUND_GOES_ON = 0.85
 _SECOND_NEW_THING = 0.5
 #: Without place statistics: what stands about, all equally likely.
-_COMMON = ("bench", "tree", "street_lamp", "waste_basket", "car", "bicycle_parking", "shop", "cafe", "restaurant",
-           "lawn",            "traffic_sign", "person", "fountain", "playground", "bus_stop", "post_box", "artwork", "shrub")  # fmt: skip
+_COMMON = (
+    *("bench", "tree", "street_lamp", "waste_basket", "car", "bicycle_parking", "shop", "cafe", "restaurant", "lawn"),
+    *("traffic_sign", "person", "fountain", "playground", "bus_stop", "post_box", "artwork", "shrub"),
+)
 #: A neighbour's lift counts for this power of itself, and only the first few neighbours count.
 _LIFT_POWER, _WITNESSES = 0.4, 4
 _LEADS = {NEAR: "Close by", MIDDLE: "A little further on", FAR: "In the distance", BACKGROUND: "In the background"}

@@ -134,12 +134,9 @@ def _split(text: str) -> list[str]:
 def _side_phrases() -> list[tuple[str, Meaning]]:
     found: list[tuple[str, Meaning]] = []
     for word, side in (("left", LEFT), ("right", RIGHT)):
-        forms = [
-            word, f"on the {word}", f"to the {word}", f"at the {word}", f"on your {word}", f"to your {word}",
-            f"on the {word} side", f"on the {word}-hand side", f"on the far {word}", f"to the far {word}", 
-                f"{word} side",            f"to the {word} side", f"towards the {word}", f"on the {word} hand side", f"off to the {word}",
-            f"far {word}",
-        ]  # fmt: skip
+        bare = [word, f"far {word}", f"{word} side", f"{word}-hand side", f"{word} hand side"]
+        leads = ("on the", "to the", "at the", "on your", "to your", "towards the", "off to the")
+        forms = [*bare, *(f"{lead} {form}" for lead, form in product(leads, bare))]
         found += [(form, (Part.SIDE, side)) for form in forms]
         found += [
             (f"{form} of {article} {whole}", (Part.SIDE, side))

@@ -100,7 +100,7 @@ def perimeter_block(sketch: Sketch, rng: Generator, block: Polygon, fabric: Fabr
     pieces = polygons_of(shapely.polygonize([shapely.union_all([rim.boundary, *cuts])]))
     lots = [piece for piece in pieces if piece.area > 20.0 and rim.contains(piece.representative_point())]
     # A passage as wide as a lorry into every courtyard, so that no ground is closed off.
-    passage = _passage(rng, court, ring)
+    passage = _passage(rng, court, ring, sketch.box)
     sketch.lay(Ground.YARD, court, "courtyard")
     sketch.lay(Ground.PAVEMENT, rim)
     choice = rng.random()
@@ -123,24 +123,25 @@ def perimeter_block(sketch: Sketch, rng: Generator, block: Polygon, fabric: Fabr
                 sketch.build(Footprint(part, round(max(height, 4.0), 1), fabric.zone, _use(rng, fabric)))
 
 
-def _passage(rng: Generator, court: shapely.Geometry, ring: Points) -> shapely.Geometry:
+def _passage(rng: Generator, court: shapely.Geometry, ring: Points, box: Polygon) -> shapely.Geometry:
     """Return strips that join each courtyard to the street."""
     strips = []
+    outer = LineString(ring)
     for part in polygons_of(court):
-        corners = np.asarray(part.exterior.coords)[:-1]
-        sides = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
-        # The middle of one of its two longest sides.
-        side = int(np.argsort(-sides, kind="stable")[int(rng.integers(min(2, len(sides))))])
-        middle = (corners[side] + corners[(side + 1) % len(corners)]) / 2
-        outer = LineString(ring)
-        nearest = np.asarray(outer.interpolate(outer.project(shapely.points(middle))).coords[0])
-        way = nearest - middle
-        length = float(np.hypot(*way)) or 1.0
-        strips.append(
-            shapely.buffer(
-                LineString([middle - way / length * 2.0, nearest + way / length * 2.0]), 2.6, cap_style="flat"
-            )
+        corners = np.asarray(part.exterior.coords)
+        middles = (corners[1:] + corners[:-1]) / 2
+        lengths = np.hypot(*np.diff(corners, axis=0).T)
+        feet = shapely.get_coordinates(
+            shapely.line_interpolate_point(outer, shapely.line_locate_point(outer, shapely.points(middles)))
         )
+        # From one of its longest sides, but never to where the world ends.
+        open_side = shapely.distance(box.exterior, shapely.points(feet)) > 3.0
+        order = np.lexsort((-lengths, ~open_side))
+        side = int(order[int(rng.integers(min(2, max(1, int(open_side.sum())))))])
+        way = feet[side] - middles[side]
+        step = way / max(float(np.hypot(*way)), 1e-6) * 2.0
+        line = LineString([middles[side] - step, feet[side] + step])
+        strips.append(shapely.buffer(line, 2.6, cap_style="flat"))
     return shapely.union_all(strips)
 
 

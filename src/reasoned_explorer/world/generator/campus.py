@@ -144,7 +144,12 @@ def _features(sketch: Sketch, rng: Generator, inner: Polygon, quads: list[Polygo
         spots = spread(rng, shapely.buffer(inner, -radius - 2.0), 17.0, jitter=0.5)
         if not len(spots):
             continue
-        free = shapely.distance(shapely.points(spots)[:, None], np.array(taken, dtype=object)[None, :]).min(axis=1, initial=math.inf) > radius
+        free = (
+            shapely.distance(shapely.points(spots)[:, None], np.array(taken, dtype=object)[None, :]).min(
+                axis=1, initial=math.inf
+            )
+            > radius
+        )
         edge = shapely.distance(shapely.points(spots), inner.exterior)
         if not free.any():
             continue

@@ -164,15 +164,16 @@ class Furnisher:
             self._feel(code, thing.x_m, thing.y_m)
 
     def stand_many(self, things: list[Thing], zones: list[int]) -> None:
-        """Take note of many objects of one class; what is near is found on the whole, for speed."""
-        if not things:
-            return
+        """Stand many objects of one class where there is room; who feels them is found on the whole, for speed."""
+        stood = []
         for thing, zone in zip(things, zones, strict=True):
-            self._note(thing, zone)
-        code = _CODE[things[0].class_name]
-        if not self._felt[code]:
+            if self.room(thing.class_name, thing.x_m, thing.y_m, thing.heading_rad, thing.size_m):
+                self._note(thing, zone)
+                stood.append((thing.x_m, thing.y_m))
+        code = _CODE[things[0].class_name] if things else 0
+        if not stood or not self._felt[code]:
             return
-        points = shapely.points(np.array([(thing.x_m, thing.y_m) for thing in things]))
+        points = shapely.points(np.array(stood))
         tree = shapely.STRtree(points)
         _, gaps = tree.query_nearest(shapely.points(self._sites.points), return_distance=True, all_matches=False)
         near = (gaps < _RADIUS_M) & ~self._present[:, code]
@@ -293,16 +294,15 @@ class Furnisher:
             0,
         )
         points = sites.points[candidates] + looks * back[:, None]
-        if cls.kind == "place":
-            good = np.ones(len(candidates), bool)
-        else:
+        good: NDArray[np.bool_] = np.ones(len(candidates), bool)
+        if cls.kind != "place":
             right = np.column_stack([front[:, 1], -front[:, 0]])
             corners = [
                 points + right * (sizes[:, :1] / 2 * a) + front * (sizes[:, 1:2] / 2 * b)
                 for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1), (0, 0))
             ]
             grounds = self._plan.at(np.vstack(corners)).reshape(5, -1)
-            good = ~_NEVER[grounds].any(axis=0)
+            good = ~np.any(_NEVER[grounds], axis=0)
         placed, apart = 0, SPACING_M.get(name, 0.0)
         for index in np.flatnonzero(good).tolist():
             if placed >= most:

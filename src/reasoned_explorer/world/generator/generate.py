@@ -43,7 +43,8 @@ def build_world(district: str, *, seed: int, size_m: float, statistics: Statisti
     crossings = add_crossings(sketch)
     regions, ways = regions_of(sketch), ways_of(sketch)
     shells = tuple(building_of(item, np.empty((0, 2))) for item in sketch.footprints)
-    plan = GroundPlan(regions, ways, shells, sketch.box)
+    # Nothing may stand on a crossing: while things are placed it is carriageway.
+    plan = GroundPlan(regions, ways[: len(ways) - len(sketch.crossings)], shells, sketch.box)
     sites = find_sites(sketch, plan, crossings)
     furnisher = Furnisher(sketch, plan, sites, statistics=statistics, pull=pull or Pull())
     _stand_areas(sketch, furnisher)
@@ -122,7 +123,7 @@ def _equip(sketch: Sketch) -> None:
             x, y = middle.x + far * math.sin(angle), middle.y + far * math.cos(angle)
             sketch.put(name, x, y, (angle + math.pi) % (2 * math.pi))
     for index, street in enumerate(sketch.streets):
-        if street.road_m > 0 or sketch.rng("bollards", index).random() < 0.25:
+        if street.road_m > 0 or sketch.rng("bollards", index).random() < 0.5:
             continue
         line, far = shapely.LineString(street.line), 11.0
         for where, ahead in ((far, far + 0.5), (line.length - far, line.length - far - 0.5)):
@@ -132,7 +133,7 @@ def _equip(sketch: Sketch) -> None:
             step = (tip - foot) / max(float(np.hypot(*(tip - foot))), 1e-6)
             aside = np.array([-step[1], step[0]])
             # A wide gap in the middle lets the fire brigade through.
-            for offset in (-4.0, -3.0, -2.0, 2.0, 3.0, 4.0):
+            for offset in (-3.4, -2.2, 2.2, 3.4):
                 x, y = (foot + aside * offset).tolist()
                 sketch.put("bollard", x, y, float(math.atan2(*step)) % (2 * math.pi))
 
@@ -163,17 +164,14 @@ def _stand_bulk(
     length, depth, height = standing_size(name)
     scales = rng.uniform(0.94, 1.06, (len(points), 2))
     things: list[Thing] = []
-    kept: list[int] = []
     for index, (x, y) in enumerate(points.tolist()):
         if widths is not None:
             wide = float(widths[index])
             size = (wide, wide, round(wide * height / length * float(scales[index, 0]), 1))
         else:
             size = (length, round(depth * float(scales[index, 0]), 2), round(height * float(scales[index, 1]), 2))
-        if furnisher.room(name, x, y, float(headings[index]), size):
-            things.append(Thing(name, x, y, float(headings[index]), size))
-            kept.append(zones[index])
-    furnisher.stand_many(things, kept)
+        things.append(Thing(name, x, y, float(headings[index]), size))
+    furnisher.stand_many(things, zones)
 
 
 def _stand_hosts(sketch: Sketch, furnisher: Furnisher) -> None:

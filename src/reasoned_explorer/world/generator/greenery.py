@@ -59,7 +59,8 @@ def plant_trees(sketch: Sketch, plan: GroundPlan) -> tuple[Points, NDArray[np.fl
         good[close] = False
     points, crowns = points[good], crowns[good]
     kept = thin(points, 3.4)
-    return points[kept], np.round(np.clip(crowns[kept], 2.5, 13.0), 1)
+    diameters: NDArray[np.float64] = np.round(np.clip(crowns[kept], 2.5, 13.0), 1)
+    return points[kept], diameters
 
 
 def _street_trees(sketch: Sketch) -> Iterator[_Stand]:
@@ -107,7 +108,8 @@ def plant_bushes(sketch: Sketch, plan: GroundPlan) -> tuple[Points, NDArray[np.f
             sizes.append(rng.uniform(0.8, 2.0, len(at)))
     if not spots:
         return np.empty((0, 2)), np.empty(0)
-    points, width = np.vstack(spots), np.round(np.concatenate(sizes), 1)
+    points = np.vstack(spots)
+    width: NDArray[np.float64] = np.round(np.concatenate(sizes).astype(float), 1)
     good = np.isin(plan.at(points), (Ground.GRASS, Ground.WOOD, Ground.GARDEN, Ground.YARD))
     good &= shapely.contains_xy(shapely.buffer(sketch.box, -1.2), points)
     good &= _clear_of_paths(sketch, points, np.full(len(points), 1.3))

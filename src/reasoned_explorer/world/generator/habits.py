@@ -67,7 +67,7 @@ ASSUMED_PER_KM2: Mapping[str, float] = {"person": 900.0, "bicycle": 260.0}
 LEAST_PER_KM2: Mapping[str, float] = {
     "fire_hydrant": 25.0, "street_lamp": 250.0, "traffic_sign": 60.0, "traffic_signals": 30.0,
     "planter": 40.0, "flagpole": 12.0, "clock": 3.0, "picnic_table": 12.0, "outdoor_seating": 15.0, "shelter": 10.0,
-    "telephone": 4.0, "charging_station": 8.0, "parking_meter": 18.0, "post_box": 12.0, "recycling": 6.0,
+    "telephone": 4.0, "charging_station": 8.0, "parking_meter": 18.0, "post_box": 12.0, "recycling": 8.0,
     "vending_machine": 10.0, "advertising": 8.0, "bicycle_rental": 6.0, "drinking_water": 3.0,
     "bus_stop": 16.0, "information": 20.0, "toilets": 3.0, "library": 1.5, "museum": 2.0,
 }  # fmt: skip

@@ -302,13 +302,30 @@ def _door(
                 steps.insert(0, _step_before(shapely.Point(doors[nearest]), footprint))
         outside = [step for step in steps if step is not None]
         if not outside:
-            return None
+            break
         others = buildings.containing(shapely.points([step[:2] for step in outside])).tolist()
         for step, other in zip(outside, others, strict=True):
             if other < 0:
                 return step
         building, here = others[-1], shapely.Point(outside[-1][:2])
-    return None
+    if target is None:
+        return None
+    # The nearest way leads through the house itself: take the nearest wall instead.
+    return _out_towards(draft, buildings, target) or _door(draft, buildings, None)
+
+
+def _out_towards(
+    draft: _Draft, buildings: BuildingSet, target: tuple[float, float]
+) -> tuple[float, float, float] | None:
+    """Return the first open spot on the straight line to the nearest way, facing on along it."""
+    gap_m = math.hypot(target[0] - draft.x_m, target[1] - draft.y_m)
+    share = np.linspace(0.0, 1.0, max(2, math.ceil(gap_m / _DOORSTEP_M) + 1))
+    spots = np.column_stack([draft.x_m + share * (target[0] - draft.x_m), draft.y_m + share * (target[1] - draft.y_m)])
+    free = np.flatnonzero(buildings.containing(shapely.points(spots)) < 0)
+    if not len(free):
+        return None
+    x_m, y_m = spots[free[0]]
+    return float(x_m), float(y_m), heading_towards_rad(draft.x_m, draft.y_m, target[0], target[1])
 
 
 def _step_before(wall: Any, footprint: Any) -> tuple[float, float, float] | None:

@@ -1,0 +1,42 @@
+"""How long worlds take to generate, and where the time goes.
+
+Run: ``python benchmarks/bench_generator.py [--profile]``. Times are wall-clock seconds of one process; "cold" includes
+the imports. Each warm figure is the best and the median of five seeds.
+"""
+
+import argparse
+import cProfile
+import pstats
+import statistics
+import time
+
+CASES = (("park", 400.0), ("plaza", 400.0), ("downtown", 1000.0), ("town", 1000.0), ("campus", 1000.0))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="Time the world generator.")
+    parser.add_argument("--profile", action="store_true", help="also print where the time of a 1 km² town goes")
+    arguments = parser.parse_args()
+
+    start = time.perf_counter()
+    from reasoned_explorer.world.generator import DISTRICTS, generate_world
+
+    world = generate_world("park", seed=0)
+    print(f"park, 400 m, cold: {time.perf_counter() - start:.2f} s, {len(world.objects)} objects")
+    others = [(name, 400.0) for name in DISTRICTS if (name, 400.0) not in CASES]
+    for district, size_m in (*CASES, *others):
+        taken, number = [], 0
+        for seed in range(1, 6):
+            start = time.perf_counter()
+            number = len(generate_world(district, seed=seed, size_m=size_m).objects)
+            taken.append(time.perf_counter() - start)
+        best, median = min(taken), statistics.median(taken)
+        print(f"{district}, {size_m:g} m: best {best:.2f} s, median {median:.2f} s, {number} objects")
+    if arguments.profile:
+        profile = cProfile.Profile()
+        profile.runcall(generate_world, "town", seed=1, size_m=1000.0)
+        pstats.Stats(profile).sort_stats("cumulative").print_stats(30)
+
+
+if __name__ == "__main__":
+    main()
