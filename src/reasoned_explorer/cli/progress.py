@@ -21,6 +21,10 @@ def header_lines(header: MissionHeader) -> Iterator[str]:
     yield f"  clock    {header.clock}, CT {header.ct_label}; seed {header.seed}"
     reference = "none" if header.reference_length_m is None else f"{header.reference_length_m:.0f} m"
     yield f"  judge    {len(header.goal_objects)} things here satisfy the goal; shortest way {reference}"
+    for line in header.understood[:4]:
+        yield f"           {_clipped(line)}"
+    if len(header.understood) > 4:
+        yield f"           and {len(header.understood) - 4} more ways to satisfy it"
     if header.attribution:
         yield f"  map      {header.attribution}"
 

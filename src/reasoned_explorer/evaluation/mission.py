@@ -32,7 +32,6 @@ from reasoned_explorer.task.sampling import SamplingSettings, sample_start
 from reasoned_explorer.vehicles import VehicleProfile
 from reasoned_explorer.vehicles.registry import vehicle_profile
 from reasoned_explorer.world.atlas import Atlas
-from reasoned_explorer.world.digest import world_digest
 from reasoned_explorer.world.geodesic import Traveller
 from reasoned_explorer.world.world import World
 
@@ -256,7 +255,7 @@ class Mission:
             goal=self.goal.text,
             level=self.goal.level,
             world=world.name,
-            world_digest=world_digest(world),
+            world_digest=self.atlas.digest,
             attribution=world.attribution,
             start=(round(start.x_m, 3), round(start.y_m, 3), round(start.z_m, 3), round(start.heading_rad, 6)),
             planner=planner.label,
@@ -272,6 +271,7 @@ class Mission:
             reference_length_m=round(length_m, 3) if np.isfinite(length_m) else None,
             reference_way=tuple((round(float(x), 2), round(float(y), 2)) for x, y in way) if way is not None else (),
             success_radius_m=self.settings.success_radius_m,
+            understood=tuple(self.spec.describe()),
         )
 
     def _ct_label(self) -> str:

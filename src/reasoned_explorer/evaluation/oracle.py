@@ -11,21 +11,28 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.minds.context import MindContext, Minds
 from reasoned_explorer.model import Assessment, Fault, Goal, Scene, SettingsError, Verdict, likert_from_score
-from reasoned_explorer.task.compliance import STRETCH_M, compliance_of
+from reasoned_explorer.simulation.vehicle import obstacles_on_leg
+from reasoned_explorer.task.compliance import STRETCH_M
 from reasoned_explorer.task.judge import Judge
 from reasoned_explorer.vehicles import VehicleProfile
 from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.geodesic import DistanceField
+from reasoned_explorer.world.sight import Obstacles
+from reasoned_explorer.world.taxonomy import IMPASSABLE_ON_FOOT, Ground
 
 #: Distance over which the oracle's score falls from 5 towards 1 by a factor of e, metres.
 _SCALE_M = 200.0
 #: Legs are looked at in steps of this length, metres.
-_SAMPLE_M = 0.5
+_SAMPLE_M = 0.25
+#: The body keeps this far off what it could touch, metres.
+_MARGIN_M = 0.15
+_IMPASSABLE = [int(ground) for ground in IMPASSABLE_ON_FOOT - {Ground.BUILDING}]
 #: A leg that ends before this has no way ahead, metres.
 _BLOCKED_M = 2.0
 
@@ -60,6 +67,8 @@ class Oracle:
 
     def __init__(self, truth: OracleTruth) -> None:
         self._truth = truth
+        # All that is imagined from one view has the same answer: the last one is kept.
+        self._answers: dict[Pose, Assessment] = {}
 
     async def evaluate(self, goal: Goal, scenes: Sequence[Scene]) -> Sequence[Assessment]:  # noqa: ARG002 - the protocol's
         """Score each scene by the remaining way from its waypoint."""
@@ -84,13 +93,13 @@ class Oracle:
 
     def _assess(self, scene: Scene) -> Assessment:
         here = scene.viewpoint or scene.waypoint
-        there, remaining_m = self._frontier(here)
-        reachable, gone_m = math.isfinite(remaining_m), here.distance_to_m(there.x_m, there.y_m)
-        return Assessment(
-            likert_from_score(_score(remaining_m)),
+        if here not in self._answers:
+            there, remaining_m = self._frontier(here)
+            reachable, gone_m = math.isfinite(remaining_m), here.distance_to_m(there.x_m, there.y_m)
             # The oracle knows what shunned ground costs: to it, such a way is none.
-            blocked=not (reachable and gone_m >= _BLOCKED_M and self._is_compliant(here, there)),
-        )
+            free = reachable and gone_m >= _BLOCKED_M and self._is_compliant(here, there)
+            self._answers = {here: Assessment(likert_from_score(_score(remaining_m)), blocked=not free)}
+        return self._answers[here]
 
     def _frontier(self, here: Pose) -> tuple[Pose, float]:
         """Return where a leg to the frontier ahead would end, and how far it is from there to success.
@@ -106,30 +115,46 @@ class Oracle:
         return there, remaining_m
 
     def _free_m(self, here: Pose) -> float:
-        """Return how far a straight leg goes before it comes near to what the vehicle collides with, metres."""
-        longest_m = self._truth.explorer.step_range_m(self._truth.judge.spec.level)[1]
-        if not self._truth.profile.collides:
-            return longest_m
-        space = self._truth.atlas.geodesics.space(self._truth.judge.traveller)
-        # The first metre is left out: the vehicle is there, whatever the cell that it stands in.
-        lengths = np.arange(1.0, longest_m + _SAMPLE_M, _SAMPLE_M)
-        points = np.stack(
+        """Return how far a straight leg goes before the body touches what it collides with, metres."""
+        profile, longest_m = self._truth.profile, self._truth.explorer.step_range_m(self._truth.judge.spec.level)[1]
+        there = here.ahead(longest_m)
+        lengths = np.arange(0.0, longest_m + _SAMPLE_M, _SAMPLE_M)
+        places = np.stack(
             (here.x_m + lengths * math.sin(here.heading_rad), here.y_m + lengths * math.cos(here.heading_rad)), axis=1
         )
-        cells = np.floor(space.grid.cells_of(points)).astype(np.int64)
-        cols, rows = cells[:, 0], cells[:, 1]
-        inside = (cols >= 0) & (rows >= 0) & (cols < space.grid.cols) & (rows < space.grid.rows)
-        free = np.zeros(len(lengths), dtype=np.bool_)
-        free[inside] = space.free[rows[inside], cols[inside]]
-        return longest_m if free.all() else max(0.0, float(lengths[int(np.argmin(free))]) - _SAMPLE_M)
+        clear = self._clearance_m(places, obstacles_on_leg(self._truth.atlas, profile, here, there))
+        # What the body touches already does not stop it on its way out.
+        touches = (clear < profile.radius_m + _MARGIN_M) & (clear < clear[0] - 0.01)
+        if not profile.flies:
+            touches |= np.isin(self._truth.atlas.ground.at_many(places[:, 0], places[:, 1]), _IMPASSABLE)
+        bounds = self._truth.atlas.world.bounds
+        touches |= [not bounds.contains(float(x), float(y)) for x, y in places]
+        return longest_m if not touches.any() else max(0.0, float(lengths[int(np.argmax(touches))]) - _SAMPLE_M)
+
+    @staticmethod
+    def _clearance_m(places: NDArray[np.float64], obstacles: Obstacles | None) -> NDArray[np.float64]:
+        """Return the distance from each place, shape (n, 2), to the nearest wall or disc, shape (n,)."""
+        clear = np.full(len(places), np.inf)
+        if obstacles is None:
+            return clear
+        if len(obstacles.walls):
+            starts, ends = obstacles.walls[:, :2], obstacles.walls[:, 2:]
+            along = ends - starts
+            squared = np.maximum((along**2).sum(axis=1), 1e-12)
+            shares = ((places[:, None] - starts) * along).sum(axis=2) / squared
+            nearest = starts + np.clip(shares, 0.0, 1.0)[..., None] * along
+            clear = np.hypot(*np.moveaxis(places[:, None] - nearest, 2, 0)).min(axis=1)
+        if len(obstacles.discs):
+            apart = np.hypot(*np.moveaxis(places[:, None] - obstacles.discs[:, :2], 2, 0)) - obstacles.discs[:, 2]
+            clear = np.minimum(clear, apart.min(axis=1))
+        return clear
 
     def _is_compliant(self, here: Pose, there: Pose) -> bool:
-        spec = self._truth.judge.spec
-        if not spec.forbidden:
+        if not self._truth.judge.spec.forbidden:
             return True
         legs = [(here.x_m, here.y_m), (there.x_m, there.y_m)]
         # Half of what the judge allows: the next leg may begin where this one ends.
-        return compliance_of(legs, self._truth.atlas.ground, spec.forbidden).longest_stretch_m <= STRETCH_M / 2.0
+        return self._truth.judge.compliance(legs).longest_stretch_m <= STRETCH_M / 2.0
 
     def _verdict(self, pose: Pose) -> Verdict:
         success = self._truth.judge.success(pose.x_m, pose.y_m, pose.z_m).success

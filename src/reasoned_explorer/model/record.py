@@ -45,6 +45,7 @@ class MissionHeader:
         reference_length_m: Of the shortest (compliant) way into the success region; None where there is none.
         reference_way: Its points.
         success_radius_m: R.
+        understood: What the judge reads in the goal, in words.
         schema: Version of this format.
     """
 
@@ -67,6 +68,7 @@ class MissionHeader:
     reference_length_m: float | None = None
     reference_way: tuple[tuple[float, float], ...] = ()
     success_radius_m: float = 15.0
+    understood: tuple[str, ...] = ()
     schema: int = RECORD_SCHEMA
 
 

@@ -78,8 +78,8 @@ def check_start(atlas: "Atlas", profile: VehicleProfile, pose: Pose) -> None:
     kind = atlas.ground.at(pose.x_m, pose.y_m)
     if not profile.flies and kind in IMPASSABLE_ON_FOOT - {GroundKind.BUILDING}:
         faults.append(Fault(f"{at} is in or on: {kind.noun}", f"ground that {profile.name} can walk on", remedy))
-    if profile.collides:
-        near = _obstacles(atlas, profile, pose, pose, 1.0)
+    near = obstacles_on_leg(atlas, profile, pose, pose, margin_m=1.0)
+    if near is not None:
         for row, object_id in zip(near.discs, near.disc_object, strict=True):
             if math.hypot(row[0] - pose.x_m, row[1] - pose.y_m) < row[2]:
                 noun = atlas.world.objects[int(object_id)].object_class.noun
@@ -195,7 +195,7 @@ class SimulatedVehicle(Vehicle):
         self._pass_idle_time()
         here = self._body.true_pose
         margin_m = _MARGIN_M + 4.0 * (self.noise.position_sigma_m + self.noise.wander_sigma_m)
-        near = _obstacles(self._atlas, self.profile, here, target, margin_m) if self.profile.collides else None
+        near = obstacles_on_leg(self._atlas, self.profile, here, target, margin_m=margin_m)
         motion_number, saved, started_s = self._next_motion(), self._body.save(), self._clock.now_s()
         motion = self._drive(target, motion_number, near)
         try:
@@ -273,7 +273,12 @@ class SimulatedVehicle(Vehicle):
         return Pose(pose.x_m, pose.y_m, self.profile.camera_height_m, pose.heading_rad)
 
 
-def _obstacles(atlas: "Atlas", profile: VehicleProfile, here: Pose, there: Pose, margin_m: float) -> "Obstacles":
+def obstacles_on_leg(
+    atlas: "Atlas", profile: VehicleProfile, here: Pose, there: Pose, *, margin_m: float = _MARGIN_M
+) -> "Obstacles | None":
+    """Return what a vehicle could run into on a straight leg and up to a margin beside it; None where it never does."""
+    if not profile.collides:
+        return None
     z_m = profile.camera_height_m if profile.flies else _WALKER_Z_M
     return atlas.sight.obstacles_near(here.x_m, here.y_m, there.x_m, there.y_m, z_m=z_m, margin_m=margin_m)
 

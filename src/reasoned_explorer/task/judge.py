@@ -180,7 +180,7 @@ class Judge:
         bad = np.flatnonzero(~np.isfinite(flat).all(axis=1))
         if bad.size:
             raise InputError("track", [Fault(f"point {i} is {points[i]}", "finite metres") for i in bad[:10]])
-        compliance = compliance_of(points, self.atlas.ground, self.spec.forbidden, tolerated=self._is_tolerated)
+        compliance = self.compliance(points)
         steps = np.hypot(*np.diff(flat, axis=0).T) if len(flat) > 1 else np.empty(0)
         at = np.concatenate(([0.0], np.cumsum(steps)))
         ticks = np.unique(np.concatenate((at, np.arange(0.0, at[-1], _TRACK_STEP_M))))
@@ -198,6 +198,10 @@ class Judge:
             compliance=compliance,
             length_m=float(at[-1]),
         )
+
+    def compliance(self, points: Sequence[tuple[float, float]]) -> ComplianceReport:
+        """Return whether a way, ENU metres, straight in between, keeps to the ground that the goal allows."""
+        return compliance_of(points, self.atlas.ground, self.spec.forbidden, tolerated=self._is_tolerated)
 
     def reference_length_m(self, start: Pose | tuple[float, float], *, max_m: float = math.inf) -> float:
         """Return the length of the shortest compliant way from a start to where a declaration succeeds, metres.

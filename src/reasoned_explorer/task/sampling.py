@@ -23,6 +23,7 @@ from reasoned_explorer.world.taxonomy import IMPASSABLE_ON_FOOT, Ground
 #: Goals that a blind declaration would satisfy more often than this are left out of splits.
 MAX_BLIND_RATE = 0.10
 _BLIND_PLACES = 300
+_LAST_RESORTS = (Ground.YARD, Ground.UNKNOWN)
 _ATTEMPTS = 60
 _DRAWS, _CELLS_A_DRAW = 20, 2000
 
@@ -67,7 +68,8 @@ def free_places(
 ) -> NDArray[np.float64]:
     """Return random places where a mission could begin: free for the traveller, outdoors, on walkable ground.
 
-    Unknown ground is taken only where there is no other. Flyers start over ground that one can walk on, too.
+    Yards, which are fenced in more often than not, and unknown ground are taken only where there is no other. Flyers
+    start over ground that one can walk on, too.
 
     Args:
         atlas: The world.

@@ -2,6 +2,7 @@
 
 from functools import cached_property
 
+from reasoned_explorer.world.digest import world_digest
 from reasoned_explorer.world.geodesic import Geodesics
 from reasoned_explorer.world.index import ObjectIndex
 from reasoned_explorer.world.raster import GroundRaster
@@ -18,6 +19,11 @@ class Atlas:
 
     def __init__(self, world: World) -> None:
         self.world = world
+
+    @cached_property
+    def digest(self) -> str:
+        """A fingerprint of what the world contains (`world_digest`)."""
+        return world_digest(self.world)
 
     @cached_property
     def ground(self) -> GroundRaster:

@@ -58,6 +58,8 @@ _PAD_M = 0.01
 _DARK = 0.02
 #: Half of the angle that a round thing fills for one who is in it.
 _WITHIN = 0.6
+#: What is less far ahead than this is not before the axis.
+_BEFORE_M = 0.05
 _FAR = 1e18
 #: What stands within the last quarter of a metre hides nothing: targets stand on walls.
 END_M = 0.25
@@ -316,15 +318,6 @@ def gather(grid: Grid, x0: float, y0: float, x1: float, y1: float, z: float) -> 
 
 
 @njit(cache=True)
-def _to_segment(px: float, py: float, ax: float, ay: float, bx: float, by: float) -> float:
-    """Distance from a point to a segment."""
-    dx, dy = bx - ax, by - ay
-    square = dx * dx + dy * dy
-    t = 0.0 if square == 0.0 else min(max(((px - ax) * dx + (py - ay) * dy) / square, 0.0), 1.0)
-    return math.hypot(px - ax - t * dx, py - ay - t * dy)
-
-
-@njit(cache=True)
 def bearing(dx: float, dy: float, sin_h: float, cos_h: float) -> float:
     """Return the bearing of an offset from an axis (its sine and cosine are given), positive to the right."""
     return math.atan2(dx * cos_h - dy * sin_h, dx * sin_h + dy * cos_h)
@@ -344,24 +337,32 @@ def _turn(angle: float) -> float:
 def _area_extent(
     target: FloatArray, corners: FloatArray, x: float, y: float, sin_h: float, cos_h: float
 ) -> tuple[float, float, float, float]:
+    """As `extent`; only what lies before the axis counts (no camera sees half of the horizon)."""
     first, last = int(target[FIRST]), int(target[LAST])
-    inside, near, far = False, _FAR, 0.0
-    turned = lowest = highest = 0.0
-    before = begin = bearing(corners[first, 0] - x, corners[first, 1] - y, sin_h, cos_h)
+    inside, near, far, lowest, highest = False, _FAR, 0.0, _FAR, -_FAR
+    ax, ay = corners[last - 1, 0] - x, corners[last - 1, 1] - y
+    ahead, right = ax * sin_h + ay * cos_h, ax * cos_h - ay * sin_h
     for k in range(first, last):
-        n = k + 1 if k + 1 < last else first
-        ax, ay, bx, by = corners[k, 0], corners[k, 1], corners[n, 0], corners[n, 1]
-        near = min(near, _to_segment(x, y, ax, ay, bx, by))
-        far = max(far, math.hypot(ax - x, ay - y))
-        if (ay > y) != (by > y) and x < (bx - ax) * (y - ay) / (by - ay) + ax:
+        bx, by = corners[k, 0] - x, corners[k, 1] - y
+        next_ahead, next_right = bx * sin_h + by * cos_h, bx * cos_h - by * sin_h
+        far = max(far, bx * bx + by * by)
+        dx, dy = bx - ax, by - ay
+        square = dx * dx + dy * dy
+        t = min(max(-(ax * dx + ay * dy) / square, 0.0), 1.0) if square > 0.0 else 0.0
+        near = min(near, (ax + t * dx) ** 2 + (ay + t * dy) ** 2)
+        if (ay > 0.0) != (by > 0.0) and ax - dx * ay / dy > 0.0:
             inside = not inside
-        after = bearing(bx - x, by - y, sin_h, cos_h)
-        turned += _turn(after - before)
-        lowest, highest = min(lowest, turned), max(highest, turned)
-        before = after
+        if next_ahead > _BEFORE_M:
+            lowest, highest = min(lowest, next_right / next_ahead), max(highest, next_right / next_ahead)
+        if (ahead > _BEFORE_M) != (next_ahead > _BEFORE_M):
+            cut = right + (next_right - right) * (_BEFORE_M - ahead) / (next_ahead - ahead)
+            lowest, highest = min(lowest, cut / _BEFORE_M), max(highest, cut / _BEFORE_M)
+        ax, ay, ahead, right = bx, by, next_ahead, next_right
     if inside:
-        return -math.pi, math.pi, 0.0, far
-    return begin + lowest, begin + highest, near, far
+        return -math.pi, math.pi, 0.0, math.sqrt(far)
+    if highest < lowest:
+        return 1.0, -1.0, math.sqrt(near), math.sqrt(far)
+    return math.atan(lowest), math.atan(highest), math.sqrt(near), math.sqrt(far)
 
 
 @njit(cache=True)
@@ -451,17 +452,17 @@ def _reach(
         return (max(t_in, 0.0), t_out) if t_in <= t_out and t_out > 0.0 else (near, near)
     t_in, t_out, crossings = _FAR, -_FAR, 0
     first, last = int(target[FIRST]), int(target[LAST])
+    ax, ay = corners[last - 1, 0] - x, corners[last - 1, 1] - y
+    right = ax * cos_r - ay * sin_r
     for k in range(first, last):
-        n = k + 1 if k + 1 < last else first
-        edge_x, edge_y = corners[n, 0] - corners[k, 0], corners[n, 1] - corners[k, 1]
-        across = sin_r * edge_y - cos_r * edge_x
-        if across == 0.0:
-            continue
-        to_x, to_y = corners[k, 0] - x, corners[k, 1] - y
-        u = (to_x * cos_r - to_y * sin_r) / across
-        t = (to_x * edge_y - to_y * edge_x) / across
-        if 0.0 <= u <= 1.0 and t > 0.0:
-            t_in, t_out, crossings = min(t_in, t), max(t_out, t), crossings + 1
+        bx, by = corners[k, 0] - x, corners[k, 1] - y
+        next_right = bx * cos_r - by * sin_r
+        if (right > 0.0) != (next_right > 0.0):
+            share = right / (right - next_right)
+            t = (ax + share * (bx - ax)) * sin_r + (ay + share * (by - ay)) * cos_r
+            if t > 0.0:
+                t_in, t_out, crossings = min(t_in, t), max(t_out, t), crossings + 1
+        ax, ay, right = bx, by, next_right
     if crossings == 0:
         return near, near
     return (0.0, t_out) if near == 0.0 else (t_in, t_out)

@@ -249,9 +249,8 @@ _WISH = re.compile(r"\b(?:want|like|love|need|have|wanted|require|must|trying) t
 
 def _is_part_of_a_cue(phrase: Phrase, text: str) -> bool:
     """Tell whether a known thing is named only for what one wants to do with it: "hire a bike"."""
-    noun = plain(phrase.words.split()[-1])
-    return any(cue.split()[-1] == noun and cue.count(" ") > 0 and not phrase.words.startswith(cue.split()[0])
-               for cue in cues_in(text))  # fmt: skip
+    head = plain(" ".join(phrase.words.split()[len(phrase.adjectives) :]))
+    return any(cue.endswith(f" {head}") for cue in cues_in(text))
 
 
 def _unfamiliar(noun: str) -> tuple[Phrase, ...]:

@@ -72,8 +72,12 @@ class SceneReading:
 
 
 _SENTENCES = re.compile(r"[.!?\n]+(?:\s+|$)")
+#: A sentence that speaks to whoever reads it describes nothing.
+_TO_THE_READER = re.compile(
+    r"\b(?:ignore|instructions?|answer|reply|respond|prompt|your goal|the goal|score|assistant)\b"
+)
 _QUOTED = re.compile(r"\"[^\"]*\"|“[^”]*”")
-_TOKENS = re.compile(r"\d+(?:\.\d+)?|[^\W\d_]+(?:['’-][^\W\d_]+)*|[,;]")
+_TOKENS = re.compile(r"[0-9]+(?:\.[0-9]+)?|[^\W\d_]+(?:['’-][^\W\d_]+)*|[,;]")
 _METRES = frozenset({"m", "metre", "metres", "meter", "meters"})
 _NEAR_M, _MIDDLE_M = 10.0, 25.0
 _SYMMETRIC = {"under": "over", "on": "has", "in": "has"}
@@ -118,6 +122,7 @@ class _Reader:
     def __init__(self) -> None:
         self.drafts: list[_Draft] = []
         self.blocked = False
+        self._just_blocked = self._blocked_before = False
         self._denied_from = 0
         self._verb_seen = False
         self._after_break = True
@@ -176,6 +181,7 @@ class _Reader:
         self._add(concept, words, many)
 
     def _add(self, concept: str | None, words: str, many: int) -> None:
+        self._just_blocked = False
         draft = _Draft(concept, words, self._lead["distance"], self._lead["side"], self._negating, many)
         self._negated_any = self._negating
         self.drafts.append(draft)
@@ -230,6 +236,8 @@ class _Reader:
     def _side(self, value: int) -> None:
         self._cue("side", value)
         self._clause_side = value
+        if self._just_blocked and value != AHEAD:  # "a wall blocks the way to the left"
+            self.blocked = self._blocked_before
 
     def _place(self, value: tuple[int, int]) -> None:
         self._cue("distance", value[0])
@@ -259,7 +267,9 @@ class _Reader:
 
     def _verb(self, _: None) -> None:
         self._end_run()
-        self._verb_seen, self._after_break, self._count, self._bare = True, False, 0, True
+        # "There is a bench, a tree and a lamp" goes on; "a bench stands here, and ..." has said what it had to say.
+        self._verb_seen = self._verb_seen or len(self.drafts) > self._denied_from
+        self._after_break, self._count, self._bare = False, 0, True
         if self._negated_any:
             self._negating = False
 
@@ -313,6 +323,7 @@ class _Reader:
         if self._negating or before in {"not", "nothing", "never", "hardly"}:
             return
         if self._clause_side in {None, AHEAD} or "ahead" in self._tokens[self._place_now :]:
+            self._just_blocked, self._blocked_before = True, self.blocked
             self.blocked = True
 
     def _other(self, _: None) -> None:
@@ -321,11 +332,12 @@ class _Reader:
     def _unknown(self, tokens: list[str], place: int) -> int:
         """Take an unknown word, or a distance in metres; return how many words were taken."""
         word = tokens[place]
-        metres = float(word) if word[0].isdigit() else _NUMBER_WORDS.get(word)
+        is_number = word[0] in "0123456789"
+        metres = float(word) if is_number else _NUMBER_WORDS.get(word)
         if metres is not None and place + 1 < len(tokens) and tokens[place + 1] in _METRES:
             self._cue("distance", NEAR if metres <= _NEAR_M else MIDDLE if metres <= _MIDDLE_M else FAR)
             return 2
-        if word[0].isdigit():
+        if is_number:
             self._end_run()
             self._count = 3 if float(word) > 2 else int(float(word))
         elif word != "away":
@@ -353,6 +365,8 @@ def _link(subject: _Draft, relation: str, other: _Draft) -> None:
 
 @lru_cache(maxsize=65536)
 def _read_sentence(sentence: str) -> tuple[tuple[Mention, ...], bool]:
+    if _TO_THE_READER.search(sentence):
+        return (), False
     reader = _Reader()
     reader.read(_TOKENS.findall(sentence))
     return tuple(draft.finish() for draft in reader.drafts), reader.blocked

@@ -62,5 +62,5 @@ def conditions_support(mention: Mention, reading: SceneReading, relevance: Relev
         for other in reading.mentions:
             if other is mention or other.negated or other.concept is None or other.distance != mention.distance:
                 continue
-            support = min(support, 1.0 - 0.5 * relevance.absent.get(other.concept, 0.0))
+            support = min(support, 1.0 - 0.8 * relevance.absent.get(other.concept, 0.0))
     return support

@@ -144,12 +144,8 @@ def _features(sketch: Sketch, rng: Generator, inner: Polygon, quads: list[Polygo
         spots = spread(rng, shapely.buffer(inner, -radius - 2.0), 17.0, jitter=0.5)
         if not len(spots):
             continue
-        free = (
-            shapely.distance(shapely.points(spots)[:, None], np.array(taken, dtype=object)[None, :]).min(
-                axis=1, initial=math.inf
-            )
-            > radius
-        )
+        free = np.ones(len(spots), bool)
+        free[shapely.STRtree(taken).query(shapely.points(spots), predicate="dwithin", distance=radius)[0]] = False
         edge = shapely.distance(shapely.points(spots), inner.exterior)
         if not free.any():
             continue

@@ -127,65 +127,44 @@ class Furnisher:
         self._pairs = np.clip(lift_matrix(statistics), -pull.cap, pull.cap) * pull.pairs
         #: Classes of which nothing is known move nothing.
         self._felt = (self._pairs != 0).any(axis=1)
+        self._moved = [np.flatnonzero(row) for row in self._pairs]
         count = len(sites.points)
         grounds = np.log(
             np.maximum([[statistics.ground_lift(g.name.lower(), c) for c in CLASS_NAMES] for g in Ground], 1e-2)
         )
         near = plan.near(sites.points).astype(float)
-        self._field = near @ np.clip(grounds, -pull.cap, pull.cap) * pull.grounds
-        self._present = np.zeros((count, len(CLASS_NAMES)), bool)
+        # One row a class: a class is drawn from its own row.
+        self._field = np.ascontiguousarray((near @ np.clip(grounds, -pull.cap, pull.cap) * pull.grounds).T)
+        self._present = np.zeros((len(CLASS_NAMES), count), bool)
         self._used = np.zeros(count, bool)
         self.things: list[Thing] = []
-        self._landmarks: dict[str, list[tuple[float, float]]] = {}
+        self._landmarks: dict[tuple[str, int, int], list[tuple[float, float]]] = {}
         self._counts = np.zeros((len(CLASS_NAMES), len(sketch.zones)))
-        self._index_cells()
-
-    def _index_cells(self) -> None:
-        min_x, min_y, max_x, max_y = self._sketch.box.bounds
-        self._origin = (min_x, min_y)
-        self._columns = int((max_x - min_x) // _RADIUS_M) + 3
-        rows = int((max_y - min_y) // _RADIUS_M) + 3
-        cells = self._cell_of(self._sites.points)
-        self._order = np.argsort(cells, kind="stable")
-        self._starts = np.searchsorted(cells[self._order], np.arange(rows * self._columns + 1))
-        self._sorted = np.ascontiguousarray(self._sites.points[self._order])
-
-    def _cell_of(self, points: Points) -> NDArray[np.intp]:
-        column = ((points[:, 0] - self._origin[0]) / _RADIUS_M).astype(int) + 1
-        row = ((points[:, 1] - self._origin[1]) / _RADIUS_M).astype(int) + 1
-        cells: NDArray[np.intp] = np.maximum(row, 0) * self._columns + np.clip(column, 0, self._columns - 1)
-        return cells
+        self._tree = shapely.STRtree(shapely.points(sites.points))
+        #: What has been placed, by class, and is not yet felt.
+        self._unfelt: dict[int, list[tuple[float, float]]] = {}
 
     def stand(self, thing: Thing, *, zone: int) -> None:
         """Take note of an object: where it stands nothing else can, and what is near it feels it."""
         self._note(thing, zone)
         code = _CODE[thing.class_name]
         if self._felt[code]:
-            self._feel(code, thing.x_m, thing.y_m)
+            self._unfelt.setdefault(code, []).append((thing.x_m, thing.y_m))
 
     def stand_many(self, things: list[Thing], zones: list[int]) -> None:
-        """Stand many objects of one class where there is room; who feels them is found on the whole, for speed."""
-        stood = []
+        """Stand many objects, those left out for which there is no room."""
         for thing, zone in zip(things, zones, strict=True):
             if self.room(thing.class_name, thing.x_m, thing.y_m, thing.heading_rad, thing.size_m):
-                self._note(thing, zone)
-                stood.append((thing.x_m, thing.y_m))
-        code = _CODE[things[0].class_name] if things else 0
-        if not stood or not self._felt[code]:
-            return
-        points = shapely.points(np.array(stood))
-        tree = shapely.STRtree(points)
-        _, gaps = tree.query_nearest(shapely.points(self._sites.points), return_distance=True, all_matches=False)
-        near = (gaps < _RADIUS_M) & ~self._present[:, code]
-        self._present[near, code] = True
-        self._field[near] += self._pairs[code]
+                self.stand(thing, zone=zone)
 
     def _note(self, thing: Thing, zone: int) -> None:
         self.things.append(thing)
         code = _CODE[thing.class_name]
         self._counts[code, zone] += 1
         if thing.class_name in SPACING_M:
-            self._landmarks.setdefault(thing.class_name, []).append((thing.x_m, thing.y_m))
+            apart = SPACING_M[thing.class_name]
+            cell = (thing.class_name, math.floor(thing.x_m / apart), math.floor(thing.y_m / apart))
+            self._landmarks.setdefault(cell, []).append((thing.x_m, thing.y_m))
         if OBJECT_CLASSES[thing.class_name].kind not in ("place", "area"):
             length, depth = (0.5, 0.5) if thing.class_name == "tree" else thing.size_m[:2]
             self._taken.take(thing.x_m, thing.y_m, thing.heading_rad, length, depth)
@@ -197,22 +176,34 @@ class Furnisher:
         length, depth = (0.5, 0.5) if class_name == "tree" else size_m[:2]
         return self._taken.free(x_m, y_m, heading_rad, length, depth)
 
-    def _feel(self, code: int, x: float, y: float) -> None:
-        column = int((x - self._origin[0]) / _RADIUS_M) + 1
-        row = int((y - self._origin[1]) / _RADIUS_M) + 1
-        for line in (row - 1, row, row + 1):
-            cell = line * self._columns + column
-            if cell < 1 or cell + 2 >= len(self._starts):
-                continue
-            low, high = self._starts[cell - 1], self._starts[cell + 2]
-            if low == high:
-                continue
-            offsets = self._sorted[low:high] - (x, y)
-            near = self._order[low:high][np.einsum("ij,ij->i", offsets, offsets) < _RADIUS_M**2]
-            fresh = near[~self._present[near, code]]
-            if len(fresh):
-                self._present[fresh, code] = True
-                self._field[fresh] += self._pairs[code]
+    def _crowded(self, class_name: str, x: float, y: float) -> bool:
+        """Return whether another of a class that keeps its distance is too near."""
+        apart = SPACING_M[class_name]
+        column, row = math.floor(x / apart), math.floor(y / apart)
+        return any(
+            math.hypot(x - other_x, y - other_y) < apart
+            for i in (column - 1, column, column + 1)
+            for j in (row - 1, row, row + 1)
+            for other_x, other_y in self._landmarks.get((class_name, i, j), ())
+        )
+
+    def _feel(self) -> None:
+        """Let the sites feel what was placed since the last time."""
+        for code, spots in self._unfelt.items():
+            points = shapely.points(np.array(spots))
+            if len(spots) > 200:
+                # So many of a kind: each site asks for its nearest one.
+                _, gaps = shapely.STRtree(points).query_nearest(
+                    self._tree.geometries, return_distance=True, all_matches=False
+                )
+                near = np.flatnonzero(gaps < _RADIUS_M)
+            else:
+                near = np.unique(self._tree.query(points, predicate="dwithin", distance=_RADIUS_M)[1])
+            fresh = near[~self._present[code, near]]
+            self._present[code, fresh] = True
+            for row in self._moved[code].tolist():
+                self._field[row, fresh] += self._pairs[code, row]
+        self._unfelt.clear()
 
     def targets(self) -> NDArray[np.float64]:
         """Return how many of each class each zone should hold, shape (classes, zones)."""
@@ -258,7 +249,8 @@ class Furnisher:
             batch = np.ceil(missing / 2.5).astype(int)
             if not batch.any():
                 return
-            logits = affinity + self._field[chosen, code]
+            self._feel()
+            logits = affinity + self._field[code, chosen]
             open_sites = ~self._used[chosen] & (missing[zones] > 0)
             # Gumbel keys: the largest of a zone are a draw without replacement by weight.
             keys = np.where(open_sites, logits + rng.gumbel(size=len(chosen)), -np.inf)
@@ -303,7 +295,7 @@ class Furnisher:
             ]
             grounds = self._plan.at(np.vstack(corners)).reshape(5, -1)
             good = ~np.any(_NEVER[grounds], axis=0)
-        placed, apart = 0, SPACING_M.get(name, 0.0)
+        placed = 0
         for index in np.flatnonzero(good).tolist():
             if placed >= most:
                 break
@@ -312,7 +304,7 @@ class Furnisher:
             size = (float(sizes[index, 0]), float(sizes[index, 1]), float(sizes[index, 2]))
             if cls.kind != "place" and not self._taken.free(x, y, heading, size[0], size[1]):
                 continue
-            if any(math.hypot(x - at[0], y - at[1]) < apart for at in self._landmarks.get(name, ())):
+            if name in SPACING_M and self._crowded(name, x, y):
                 continue
             site = int(candidates[index])
             self._used[site] = True
