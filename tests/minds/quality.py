@@ -106,10 +106,8 @@ def main() -> None:
             for line in wrong:
                 print("   ", line)
         hard = hard_aucs(senses)
-        print(
-            f"  pooled AUC {pooled_auc(senses):.3f}; words outside of the lexicon: AUC {sum(hard.values()) / len(hard)"
-            f":.3f}"
-        )
+        print(f"  pooled AUC {pooled_auc(senses):.3f}")
+        print(f"  words outside of the lexicon: AUC {sum(hard.values()) / len(hard):.3f}")
 
 
 if __name__ == "__main__":

@@ -28,7 +28,7 @@ def test_likeness_is_rounded_symmetric_and_sensible():
 
 @needs_weights
 def test_what_the_layers_compute_does_not_change():
-    # Taken from this code once; the published implementation agrees to 1e-6.
+    # Taken from this code once.
     embedder = load_embedder()
     assert embedder is not None
     assert embedder.likeness("mailbox", "letter box") == pytest.approx(0.6896, abs=2e-4)

@@ -8,9 +8,9 @@ from reasoned_explorer.model import GoalError
 
 THINGS = {"fire hydrant": "fire_hydrant", "bench": "bench", "mailbox": "post_box", "bicycle rack": "bicycle_parking",
           "umbrella table": "outdoor_seating", "drinking fountain": "drinking_water", "statue": "artwork"}  # fmt: skip
-FRAMES = ("Find me a {}", "find a {}", "Could you please find me the nearest {}", "I am looking for a {}", "Where is
-the {}",
-          "Take me to a {}", "Go to the {}", "Locate a {}", "I need a {}", "Is there a {} around here")  # fmt: skip
+FRAMES = ("Find me a {}", "find a {}", "Could you please find me the nearest {}", "I am looking for a {}",
+          "Where is the {}", "Take me to a {}", "Go to the {}", "Locate a {}", "I need a {}",
+          "Is there a {} around here")  # fmt: skip
 NEAR = {"near a tree": ("near", "tree"), "next to a kiosk": ("near", "kiosk"), "under a tree": ("under", "tree"),
         "beside the church": ("near", "church"), "in front of a shop": ("in_front", "shop"), "on the grass": ("on",
         "lawn"), "by the water": ("near", "water"), "behind a building": ("behind", "building")}  # fmt: skip

@@ -128,8 +128,8 @@ def test_lists_share_their_side():
     ]
 
 
-WORDS = ("there is", "a", "no", "the", "bench", "tree", "under", "next to", "it", ",", ";", ".", "and", "on the left", "on",
-         "the right", "in the distance", "ahead", "20 m", "with", "not", "blocked", "without", "¹")  # fmt: skip
+WORDS = ("there is", "a", "no", "the", "bench", "tree", "under", "next to", "it", ",", ";", ".", "and", "on the left",
+         "on", "the right", "in the distance", "ahead", "20 m", "with", "not", "blocked", "without", "¹")  # fmt: skip
 
 
 @settings(deadline=None, max_examples=100)

@@ -1,4 +1,7 @@
 import asyncio
+import os
+import subprocess
+import sys
 
 import pytest
 
@@ -119,3 +122,28 @@ def test_a_goal_without_sense_is_an_error():
 
     with pytest.raises(GoalError):
         context.clock.run(mission())
+
+
+_PROBE = """
+from reasoned_explorer.minds.embedded import default_senses
+from reasoned_explorer.minds.embedded.checker import verdict_on
+from reasoned_explorer.minds.embedded.evaluator import assess
+from reasoned_explorer.minds.embedded.lexicon import data_lines
+from reasoned_explorer.minds.embedded.visionary import imagine_texts
+senses = default_senses(with_embedder=False)
+for number, text in enumerate(data_lines("background_scenes")):
+    for imagined in imagine_texts(text, seed=3, key=(number, 0, 1), count=2, senses=senses):
+        for goal in ("Find me a bench near a tree, avoid the road and the grass", "Find me a shady place to sit"):
+            print(imagined, assess(goal, imagined, senses), verdict_on(goal, imagined, senses))
+"""
+
+
+def test_two_processes_think_the_same_thing():
+    outputs = [
+        subprocess.run(
+            [sys.executable, "-c", _PROBE], env={**os.environ, "PYTHONHASHSEED": seed}, capture_output=True, check=True
+        ).stdout
+        for seed in ("1", "2")
+    ]
+    assert outputs[0] == outputs[1]
+    assert outputs[0].count(b"\n") > 200

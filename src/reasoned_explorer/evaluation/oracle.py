@@ -18,7 +18,6 @@ from reasoned_explorer.geometry import Pose
 from reasoned_explorer.minds.context import MindContext, Minds
 from reasoned_explorer.model import Assessment, Fault, Goal, Scene, SettingsError, Verdict, likert_from_score
 from reasoned_explorer.simulation.vehicle import obstacles_on_leg
-from reasoned_explorer.task.compliance import STRETCH_M
 from reasoned_explorer.task.judge import Judge
 from reasoned_explorer.vehicles import VehicleProfile
 from reasoned_explorer.world.atlas import Atlas
@@ -32,6 +31,8 @@ _SCALE_M = 200.0
 _SAMPLE_M = 0.25
 #: The body keeps this far off what it could touch, metres.
 _MARGIN_M = 0.15
+#: As much forbidden ground in one leg: the next leg may begin where this one ends, and the judge allows 5 m.
+_STRETCH_M = 2.0
 _IMPASSABLE = [int(ground) for ground in IMPASSABLE_ON_FOOT - {Ground.BUILDING}]
 #: A leg that ends before this has no way ahead, metres.
 _BLOCKED_M = 2.0
@@ -69,6 +70,7 @@ class Oracle:
         self._truth = truth
         # All that is imagined from one view has the same answer: the last one is kept.
         self._answers: dict[Pose, Assessment] = {}
+        self._was_compliant = False
 
     async def evaluate(self, goal: Goal, scenes: Sequence[Scene]) -> Sequence[Assessment]:  # noqa: ARG002 - the protocol's
         """Score each scene by the remaining way from its waypoint."""
@@ -152,9 +154,13 @@ class Oracle:
     def _is_compliant(self, here: Pose, there: Pose) -> bool:
         if not self._truth.judge.spec.forbidden:
             return True
-        legs = [(here.x_m, here.y_m), (there.x_m, there.y_m)]
-        # Half of what the judge allows: the next leg may begin where this one ends.
-        return self._truth.judge.compliance(legs).longest_stretch_m <= STRETCH_M / 2.0
+        judge, leg = self._truth.judge, [(here.x_m, here.y_m), (there.x_m, there.y_m)]
+        # On its way off forbidden ground that it was put down on, it may take what the judge excuses.
+        if not self._was_compliant and judge.compliance(leg).compliant:
+            return True
+        compliant = judge.compliance(leg, excuse_start=False).longest_stretch_m <= _STRETCH_M
+        self._was_compliant |= compliant
+        return compliant
 
     def _verdict(self, pose: Pose) -> Verdict:
         success = self._truth.judge.success(pose.x_m, pose.y_m, pose.z_m).success

@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
@@ -83,6 +84,7 @@ class Explorer:
     _look_heading_rad: float | None = field(init=False, default=None)
     _looks_around: dict[int, int] = field(init=False, default_factory=dict)
     _look_next: bool = field(init=False, default=True)
+    _stopped: bool = field(init=False, default=False)
     _faults_in_a_row: int = field(init=False, default=0)
     _ct_s: float = field(init=False, default=0.0)
     _tt_s: float = field(init=False, default=0.0)
@@ -172,7 +174,11 @@ class Explorer:
     async def _look_and_think(self, goal: Goal, step: StepDraft) -> tuple[MissionEnd, str] | None:
         ahead_rad = self.parts.vehicle.pose.heading_rad
         heading_rad = ahead_rad if self._look_heading_rad is None else self._look_heading_rad
-        look = await self._look(goal, step, [heading_rad + turn for turn in self.settings.bearings_rad()])
+        turns = self.settings.bearings_rad()
+        if self._stopped and self.settings.look_back_after_stop:
+            turns += [math.pi + turn for turn in turns]
+        self._stopped = False
+        look = await self._look(goal, step, [heading_rad + turn for turn in turns])
         if look is None:
             return None
         started_s, looked_s = self.parts.clock.now_s(), step.look_s
@@ -344,6 +350,7 @@ class Explorer:
             self.graph.give_up(frontier, reason)
             step.notes.append(f"frontier {frontier.id} given up: {reason}")
         self._look_next = leg.length_m >= _NOWHERE_M
+        self._stopped = True
         if self._look_next:
             self._point = self.graph.add_point(self.parts.vehicle.pose, previous=self._point)
         return False

@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from reasoned_explorer.model.draws import normal
+from reasoned_explorer.model.draws import key_of, normal
 from reasoned_explorer.model.errors import Fault, SettingsError, UnknownNameError
 
 #: The roles that a call can have.
@@ -79,14 +79,15 @@ class LatencyProfile:
         latency = self.role(role)
         if latency.median_s == 0.0:
             return 0.0
-        return latency.median_s * math.exp(latency.sigma * normal(seed, "latency", role, *keys))
+        return latency.median_s * math.exp(latency.sigma * normal(key_of(seed, "latency", role), *keys))
 
     def batch_s(self, role: str, seed: int, calls: Iterable[tuple[int | str, ...]]) -> tuple[float, ...]:
         """Return the seconds of each of several calls; started together, they end with the slowest."""
         latency = self.role(role)
         if latency.median_s == 0.0:
             return tuple(0.0 for _ in calls)
-        return tuple(self.duration_s(role, seed, *keys) for keys in calls)
+        base = key_of(seed, "latency", role)
+        return tuple(latency.median_s * math.exp(latency.sigma * normal(base, *keys)) for keys in calls)
 
 
 _PROFILES = {

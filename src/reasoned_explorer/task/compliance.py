@@ -60,6 +60,7 @@ def compliance_of(
     forbidden: frozenset[Ground],
     *,
     tolerated: Callable[[Floats, Floats], Flags],
+    excuse_start: bool = True,
 ) -> ComplianceReport:
     """Return whether a track complied.
 
@@ -68,6 +69,8 @@ def compliance_of(
         ground: Of the world.
         forbidden: Ground to keep off (`GoalSpec.forbidden`).
         tolerated: Says of points, east and north, whether they are that near to ground that is not forbidden.
+        excuse_start: Whether the way off forbidden ground that the track starts on is excused; False for a part of a
+            track.
     """
     if not forbidden or not points:
         return ComplianceReport(compliant=True)
@@ -80,7 +83,7 @@ def compliance_of(
     deep = on.copy()
     deep[on] = ~tolerated(places[on, 0], places[on, 1])
     steps = np.diff(along, prepend=along[0])
-    excused_m = 2.0 * _way_off_m(places[0], ground, codes) + SHUNNED_TOLERANCE_M if on[0] else 0.0
+    excused_m = 2.0 * _way_off_m(places[0], ground, codes) + SHUNNED_TOLERANCE_M if on[0] and excuse_start else 0.0
     longest_m, violation_at_m = 0.0, math.inf
     for first, last in _runs(on):
         for start_m, end_m in _counted(along, deep, first, last):

@@ -199,9 +199,18 @@ class Judge:
             length_m=float(at[-1]),
         )
 
-    def compliance(self, points: Sequence[tuple[float, float]]) -> ComplianceReport:
-        """Return whether a way, ENU metres, straight in between, keeps to the ground that the goal allows."""
-        return compliance_of(points, self.atlas.ground, self.spec.forbidden, tolerated=self._is_tolerated)
+    def compliance(self, points: Sequence[tuple[float, float]], *, excuse_start: bool = True) -> ComplianceReport:
+        """Return whether a way, ENU metres, straight in between, keeps to the ground that the goal allows.
+
+        A start on forbidden ground is excused (`compliance_of`), unless the way is only a part of one.
+        """
+        return compliance_of(
+            points,
+            self.atlas.ground,
+            self.spec.forbidden,
+            tolerated=self._is_tolerated,
+            excuse_start=excuse_start,
+        )
 
     def reference_length_m(self, start: Pose | tuple[float, float], *, max_m: float = math.inf) -> float:
         """Return the length of the shortest compliant way from a start to where a declaration succeeds, metres.

@@ -25,7 +25,7 @@ from reasoned_explorer.minds.embedded.reading import (
     read_scene,
 )
 from reasoned_explorer.minds.embedded.relevance import Senses
-from reasoned_explorer.model.draws import key_of, uniform
+from reasoned_explorer.model.draws import key_of
 
 #: About how many words an imagined scene has (the authors' prompt asks for 50).
 WORDS = 50
@@ -228,15 +228,17 @@ def _ground_sentence(ahead: str | None, left: str | None, right: str | None) -> 
 
 
 class _Draws:
-    """The draws of one child, by number."""
+    """The draws of one child, one after the other: a linear congruential sequence from a key of its own.
+
+    Multiplier and increment are those of Knuth's MMIX; only the upper bits are used.
+    """
 
     def __init__(self, seed: int, key: tuple[int, ...], child: int) -> None:
-        self._key = key_of(seed, *key, child)
-        self._count = 0
+        self._state = key_of(seed, *key, child)
 
     def next(self) -> float:
-        self._count += 1
-        return uniform(self._key, self._count)
+        self._state = (self._state * 6364136223846793005 + 1442695040888963407) & 0xFFFFFFFFFFFFFFFF
+        return (self._state >> 11) * (1.0 / (1 << 53))
 
 
 def imagine_texts(text: str, *, seed: int, key: tuple[int, ...], count: int, senses: Senses) -> tuple[str, ...]:
