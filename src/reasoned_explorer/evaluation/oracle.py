@@ -21,18 +21,23 @@ from reasoned_explorer.simulation.vehicle import obstacles_on_leg
 from reasoned_explorer.task.judge import Judge
 from reasoned_explorer.vehicles import VehicleProfile
 from reasoned_explorer.world.atlas import Atlas
-from reasoned_explorer.world.geodesic import DistanceField
+from reasoned_explorer.world.geodesic import DistanceField, Traveller
 from reasoned_explorer.world.sight import Obstacles
 from reasoned_explorer.world.taxonomy import IMPASSABLE_ON_FOOT, Ground
 
 #: Distance over which the oracle's score falls from 5 towards 1 by a factor of e, metres.
 _SCALE_M = 200.0
+#: Declared only this far inside the success radius, metres.
+_INSIDE_M = 0.3
 #: Legs are looked at in steps of this length, metres.
 _SAMPLE_M = 0.25
 #: The body keeps this far off what it could touch, metres.
 _MARGIN_M = 0.15
 #: As much forbidden ground in one leg: the next leg may begin where this one ends, and the judge allows 5 m.
 _STRETCH_M = 2.0
+_STRAY_M = 0.3
+#: Whom only the goal's grounds stop.
+_GHOST = Traveller(flies=True, radius_m=0.0, collides=False)
 _IMPASSABLE = [int(ground) for ground in IMPASSABLE_ON_FOOT - {Ground.BUILDING}]
 #: A leg that ends before this has no way ahead, metres.
 _BLOCKED_M = 2.0
@@ -70,7 +75,7 @@ class Oracle:
         self._truth = truth
         # All that is imagined from one view has the same answer: the last one is kept.
         self._answers: dict[Pose, Assessment] = {}
-        self._was_compliant = False
+        self._has_left = False
 
     async def evaluate(self, goal: Goal, scenes: Sequence[Scene]) -> Sequence[Assessment]:  # noqa: ARG002 - the protocol's
         """Score each scene by the remaining way from its waypoint."""
@@ -154,17 +159,37 @@ class Oracle:
     def _is_compliant(self, here: Pose, there: Pose) -> bool:
         if not self._truth.judge.spec.forbidden:
             return True
-        judge, leg = self._truth.judge, [(here.x_m, here.y_m), (there.x_m, there.y_m)]
+        judge = self._truth.judge
+        self._has_left |= not self._shuns(here)
         # On its way off forbidden ground that it was put down on, it may take what the judge excuses.
-        if not self._was_compliant and judge.compliance(leg).compliant:
+        if not self._has_left and judge.compliance(_beside(here, there, 0.0)).compliant:
             return True
-        compliant = judge.compliance(leg, excuse_start=False).longest_stretch_m <= _STRETCH_M
-        self._was_compliant |= compliant
-        return compliant
+        # The vehicle strays from its line by centimetres, and the judge's tolerance ends at the edge of a cell.
+        return not self._shuns(there) and all(
+            judge.compliance(_beside(here, there, aside_m), excuse_start=False).longest_stretch_m <= _STRETCH_M
+            for aside_m in (0.0, -_STRAY_M, _STRAY_M)
+        )
+
+    def _shuns(self, pose: Pose) -> bool:
+        """Return whether a place is deep in forbidden ground."""
+        judge = self._truth.judge
+        space = self._truth.atlas.geodesics.space(_GHOST, shunned=judge.spec.forbidden)
+        col, row = np.floor(space.grid.cells_of(np.array([[pose.x_m, pose.y_m]]))[0]).astype(int)
+        inside = 0 <= col < space.grid.cols and 0 <= row < space.grid.rows
+        return inside and not space.free[row, col]
 
     def _verdict(self, pose: Pose) -> Verdict:
-        success = self._truth.judge.success(pose.x_m, pose.y_m, pose.z_m).success
-        return Verdict(success, 1.0 if success else 0.0, "the judge agrees" if success else "")
+        judge = self._truth.judge
+        report = judge.success(pose.x_m, pose.y_m, pose.z_m)
+        # The vehicle knows where it is only to centimetres, so it stops a little inside the radius.
+        found = report.success and report.distance_m <= judge.success_radius_m - _INSIDE_M
+        return Verdict(found, 1.0 if found else 0.0, "the judge agrees" if found else "")
+
+
+def _beside(here: Pose, there: Pose, aside_m: float) -> list[tuple[float, float]]:
+    """Return the leg between two poses, moved to its right."""
+    x_m, y_m = aside_m * math.cos(here.heading_rad), -aside_m * math.sin(here.heading_rad)
+    return [(here.x_m + x_m, here.y_m + y_m), (there.x_m + x_m, there.y_m + y_m)]
 
 
 def _score(remaining_m: float) -> float:
