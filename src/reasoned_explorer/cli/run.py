@@ -120,7 +120,9 @@ def _folder(options: RunOptions) -> Path:
     """Return where the run is kept: as given, or the first free name under ``runs/``."""
     if options.out is not None:
         if options.out.exists() and (not options.out.is_dir() or any(options.out.iterdir())):
-            fault = Fault(f"{options.out} is there and not an empty folder", "a new or empty folder", "give another --out")
+            fault = Fault(
+                f"{options.out} is there and not an empty folder", "a new or empty folder", "give another --out"
+            )
             raise RecordError("--out", [fault])
         return options.out
     world = Path(options.world).name.split(".")[0]

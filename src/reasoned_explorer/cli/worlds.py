@@ -36,8 +36,10 @@ def import_and_keep(osm_file: Path, *, bbox: str | None, seed: int, out: Path | 
 
     world, report = import_osm_with_report(osm_file, bbox=parse_bbox(bbox), seed=seed)
     _report(world, out)
-    for line in report.lines():
-        _say(line)
+    if report.newest_edit:
+        _say(f"newest edit on the map: {report.newest_edit}")
+    for warning in report.warnings:
+        _say(f"note: {warning}")
 
 
 def inspect_world(spec: str, *, bbox: str | None, seed: int) -> None:

@@ -10,7 +10,10 @@ from reasoned_explorer.cli.answers import answering
 worlds_app = typer.Typer(help="Generate, import, inspect and draw worlds.", no_args_is_help=True)
 
 _Spec = Annotated[
-    str, typer.Argument(metavar="WORLD", help="A district (park, downtown:7, town@800 …), an OSM file, or a .rexworld file.")
+    str,
+    typer.Argument(
+        metavar="WORLD", help="A district (park, downtown:7, town@800 …), an OSM file, or a .rexworld file."
+    ),
 ]
 _Bbox = Annotated[str | None, typer.Option(help="Crop an OpenStreetMap file: lon0,lat0,lon1,lat1 (degrees).")]
 _Seed = Annotated[int, typer.Option(min=0, help="Of generation, and of seeded defaults of an import.")]

@@ -148,9 +148,7 @@ class Mission:
         self.clock = CLOCKS[self.settings.clock]()
         self.explorer = self._explorer()
 
-    def run(
-        self, *, folder: Path | None = None, on_step: Callable[[StepRecord], None] | None = None
-    ) -> MissionResult:
+    def run(self, *, folder: Path | None = None, on_step: Callable[[StepRecord], None] | None = None) -> MissionResult:
         """Run the mission to its end.
 
         Args:
@@ -336,9 +334,7 @@ class Mission:
             calls=dict(sorted(calls.items())),
             radii={f"{radius_m:g}": hit for radius_m, hit in scored.success_at},
             judge=self._verdict(judged),
-            collisions=tuple(
-                leg.detail for step in steps for leg in step.legs if leg.outcome is LegOutcome.COLLISION
-            ),
+            collisions=tuple(leg.detail for step in steps for leg in step.legs if leg.outcome is LegOutcome.COLLISION),
         )
         return summary, scored
 

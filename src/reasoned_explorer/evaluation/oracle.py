@@ -203,7 +203,9 @@ def make_minds(context: MindContext) -> Minds:
         SettingsError: If there is no truth to read, as on a real vehicle.
     """
     if not isinstance(context.truth, OracleTruth):
-        fault = Fault("the oracle mind was asked for where no truth is known", "a simulated world and a goal it can judge")
+        fault = Fault(
+            "the oracle mind was asked for where no truth is known", "a simulated world and a goal it can judge"
+        )
         raise SettingsError("minds", [fault])
     oracle = Oracle(context.truth)
     return Minds(label="oracle (knows the world; an upper bound)", evaluator=oracle, visionary=oracle, checker=oracle)

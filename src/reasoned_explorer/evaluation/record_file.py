@@ -8,7 +8,7 @@ writes the same bytes.
 import json
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, Self
 
 from pydantic import TypeAdapter, ValidationError
 
@@ -59,7 +59,7 @@ class RecordWriter:
         """Close the file; safe to call twice."""
         self._file.close()
 
-    def __enter__(self) -> "RecordWriter":
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(
@@ -109,7 +109,9 @@ def read_record(folder: Path) -> EpisodeRecord:
             else:
                 raise _line_error(path, number, f"holds {kind!r}", "a step, then one summary at the end")
         except ValidationError as error:
-            raise _line_error(path, number, f"{error.error_count()} faults, {error.errors()[0]['msg']}", kind) from error
+            raise _line_error(
+                path, number, f"{error.error_count()} faults, {error.errors()[0]['msg']}", kind
+            ) from error
     if header is None:
         raise _line_error(path, 1, "holds no header", "a header")
     return EpisodeRecord(header, tuple(steps), summary)

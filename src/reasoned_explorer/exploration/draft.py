@@ -39,7 +39,7 @@ class LookDraft:
         """Return one record per view."""
         views = []
         for index, scene in enumerate(self.scenes):
-            verdict = self.verdicts[index] if index < len(self.verdicts) else Verdict(False, 0.0)
+            verdict = self.verdicts[index] if index < len(self.verdicts) else Verdict(found=False, confidence=0.0)
             score = self.scores[index] if index < len(self.scores) else FrontierScore(None)
             pose = scene.viewpoint or scene.waypoint
             views.append(

@@ -5,6 +5,7 @@ import contextlib
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from reasoned_explorer.clock import Clock
 from reasoned_explorer.exploration.draft import LookDraft, StepDraft
@@ -78,7 +79,7 @@ class Explorer:
 
     parts: Parts
     settings: ExplorerSettings = field(default_factory=ExplorerSettings)
-    on_step: Callable[[StepRecord], None] = lambda record: None
+    on_step: Callable[[StepRecord], None] | None = None
     graph: TopologicalGraph = field(init=False)
     _point: int = field(init=False, default=0)
     _look_heading_rad: float | None = field(init=False, default=None)
@@ -146,7 +147,9 @@ class Explorer:
             )
             for call in calls
         ]
-        self.on_step(step.freeze(ended_s=self.parts.clock.now_s(), ct_s=self._ct_s, tt_s=self._tt_s, calls=kept))
+        record = step.freeze(ended_s=self.parts.clock.now_s(), ct_s=self._ct_s, tt_s=self._tt_s, calls=kept)
+        if self.on_step is not None:
+            self.on_step(record)
 
     async def _advance(self, goal: Goal, step: StepDraft) -> tuple[MissionEnd, str] | None:
         """Make one step; return how the mission ended if it did."""
@@ -271,7 +274,7 @@ class Explorer:
         except PartError as fault:
             self._note_fault(step, fault)
             return None
-        verdicts = [Verdict(False, 0.0, fault=scene.fault) for scene in look.scenes]
+        verdicts = [Verdict(found=False, confidence=0.0, fault=scene.fault) for scene in look.scenes]
         for index, verdict in zip(asked, answers, strict=True):
             verdicts[index] = verdict
         look.verdicts = verdicts
@@ -331,7 +334,7 @@ class Explorer:
             self._point = self.graph.add_point(self.parts.vehicle.pose, previous=self._point)
 
     async def _leg(self, step: StepDraft, frontier: Frontier | None, target: Pose) -> bool:
-        """Travel one leg; return whether it arrived. If not, the frontier that it led to is given up with its reason."""
+        """Travel one leg; return whether it arrived. If not, the frontier that it led to is given up with a reason."""
         started_s = self.parts.clock.now_s()
         try:
             leg = await self.parts.vehicle.go_to(target)
@@ -363,7 +366,7 @@ class Explorer:
 def _facing_onwards(route: list[Pose]) -> list[Pose]:
     """Return the route's waypoints, each but the last facing the next."""
     turned = []
-    for here, there in zip(route, route[1:], strict=False):
+    for here, there in pairwise(route):
         turned.append(here.facing(here.heading_rad + here.bearing_to_rad(there.x_m, there.y_m)))
     return [*turned, route[-1]] if route else []
 

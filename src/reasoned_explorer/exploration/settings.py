@@ -8,7 +8,7 @@ from reasoned_explorer.model import Fault, SettingsError
 
 @dataclass(frozen=True, slots=True)
 class ExplorerSettings:
-    """How the agent looks, steps, halts and gives up. Defaults are the design's; (P) paper, (C) authors' code, (O) ours.
+    """How the agent looks, steps, halts and gives up; (P) is the paper's, (C) the authors' code's, (O) ours.
 
     Attributes:
         views: N, headings per look, 1 to 24 (C: 3).

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Protocol
 
-from reasoned_explorer.model import Goal, Scene, View
+from reasoned_explorer.model import Goal, View
 
 
 class Captioner(Protocol):

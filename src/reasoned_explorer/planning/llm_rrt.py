@@ -111,9 +111,7 @@ class LlmRrt:
             return FrontierScore(None, fault=next((fault for fault in faults if fault), "no answer"))
         first = min(node.scene.depth for node, _ in answered)
         nearest = [assessment for node, assessment in answered if node.scene.depth == first]
-        return FrontierScore(
-            total / weights, blocked=_all(nearest, "blocked"), forbidden=_all(nearest, "forbidden")
-        )
+        return FrontierScore(total / weights, blocked=_all(nearest, "blocked"), forbidden=_all(nearest, "forbidden"))
 
 
 def _all(assessments: list[Assessment], answer: str) -> bool:

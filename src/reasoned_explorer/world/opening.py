@@ -1,8 +1,8 @@
 """Worlds by what people type: a district to generate, or a file.
 
-``park``, ``park:7`` (seed 7), ``park:7@600`` (600 m across), ``town.osm.pbf``, ``town.osm``, ``kept.rexworld``, or a name
-that another package registered under the entry-point group ``reasoned_explorer.worlds``, whose factory is called as
-``factory(seed=…, size_m=…)`` and returns a `World`.
+``park``, ``park:7`` (seed 7), ``park:7@600`` (600 m across), ``town.osm.pbf``, ``town.osm``, ``kept.rexworld``, or a
+name that another package registered under the entry-point group ``reasoned_explorer.worlds``, whose factory is called
+as ``factory(seed=…, size_m=…)`` and returns a `World`.
 """
 
 import re

@@ -82,7 +82,9 @@ def make_vehicle_profile() -> VehicleProfile:
 def make_world(*, seed: int, size_m: float) -> World:
     """A world's factory is called with a seed and a size."""
     half_m = size_m / 2.0
-    meadow = Region(Ground.GRASS, np.array([[-half_m, -half_m], [half_m, -half_m], [half_m, half_m], [-half_m, half_m]]))
+    meadow = Region(
+        Ground.GRASS, np.array([[-half_m, -half_m], [half_m, -half_m], [half_m, half_m], [-half_m, half_m]])
+    )
     bench = WorldObject(0, "bench", 0.0, half_m / 2.0, math.pi, (1.8, 0.6, 0.85))
     return World(
         name=f"meadow:{seed}",
