@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from reasoned_explorer.evaluation.record_file import RECORD_NAME, RecordWriter, read_record
-from reasoned_explorer.model import LegOutcome, RecordError, TrackPoint
+from reasoned_explorer.model import LegOutcome, RecordError, RecordWriteError, TrackPoint
 from reasoned_explorer.model.record import (
     ChoiceRecord,
     FrontierRecord,
@@ -137,10 +137,10 @@ def test_a_record_is_never_written_over(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
 def test_a_full_disk_is_an_error_in_words(tmp_path: Path) -> None:
-    with RecordWriter(tmp_path) as writer:
+    with RecordWriter(tmp_path) as writer, Path("/dev/full").open("wb", buffering=0) as full:
         writer._file.close()
-        writer._file = open("/dev/full", "wb", buffering=0)  # type: ignore[assignment]  # noqa: PTH123, SIM115
-        with pytest.raises(RecordError, match="No space left"):
+        writer._file = full
+        with pytest.raises(RecordWriteError, match="No space left"):
             writer.header(HEADER)
 
 

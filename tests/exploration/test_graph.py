@@ -18,11 +18,11 @@ def test_the_choice_is_the_highest_score_less_the_penalty_of_distance() -> None:
     graph.add_frontier(0, Pose(0.0, 10.0), 3.0)
     far = graph.add_frontier(0, Pose(0.0, 100.0), 3.9)
     near = graph.add_frontier(0, Pose(10.0, 0.0), 3.1)
-    choice = graph.choose(Pose(0.0, 0.0))
+    choice = graph.choose(0)
     assert choice is not None
     assert choice.frontier is near  # 3.1 - 0 beats 3.9 - 1
     graph.take(near)
-    again = graph.choose(Pose(0.0, 0.0))
+    again = graph.choose(0)
     assert again is not None
     assert again.frontier is not far
     assert near.state is FrontierState.VISITED
@@ -33,7 +33,7 @@ def test_ties_go_to_the_nearer_and_then_to_the_older() -> None:
     graph.add_frontier(0, Pose(0.0, 12.0), 3.0)
     older = graph.add_frontier(0, Pose(0.0, 10.0), 3.00001)
     graph.add_frontier(0, Pose(10.0, 0.0), 3.00004)
-    choice = graph.choose(Pose(0.0, 0.0))
+    choice = graph.choose(0)
     assert choice is not None
     assert choice.frontier is older
 
@@ -44,7 +44,7 @@ def test_shunned_ground_comes_last_and_missing_scores_before_it() -> None:
     missing = graph.add_frontier(0, Pose(10.0, 0.0), None)
     poor = graph.add_frontier(0, Pose(0.0, -10.0), 1.0)
     order = []
-    while (choice := graph.choose(Pose(0.0, 0.0))) is not None:
+    while (choice := graph.choose(0)) is not None:
         order.append(choice.frontier)
         graph.take(choice.frontier)
     assert order == [poor, missing, shunned]
@@ -53,7 +53,7 @@ def test_shunned_ground_comes_last_and_missing_scores_before_it() -> None:
 def test_a_blocked_frontier_is_remembered_with_its_reason_and_never_chosen() -> None:
     graph = _graph()
     blocked = graph.add_frontier(0, Pose(0.0, 10.0), 1.0, blocked_by="a wall")
-    assert graph.choose(Pose(0.0, 0.0)) is None
+    assert graph.choose(0) is None
     assert (blocked.state, blocked.reason) == (FrontierState.BLOCKED, "a wall")
 
 
@@ -78,10 +78,27 @@ def test_no_open_frontier_is_worth_more_than_the_chosen_one(frontiers: list[tupl
     graph = _graph()
     for x_m, y_m, q in frontiers:
         graph.add_frontier(0, Pose(x_m, y_m), q)
-    choice = graph.choose(Pose(0.0, 0.0))
+    choice = graph.choose(0)
     assert choice is not None
     assert choice.value is not None
     for frontier in graph.open_frontiers():
         distance_m = math.hypot(frontier.pose.x_m, frontier.pose.y_m)
         worth = (frontier.q or 0.0) - 1.0 / (1.0 + math.exp(-0.5 * (distance_m - 60.0)))
         assert worth <= choice.value + 1e-4
+
+
+def test_distance_is_that_of_the_way_not_of_the_straight_line() -> None:
+    graph = _graph()
+    graph.add_point(Pose(0.0, 50.0), previous=0)
+    last = graph.add_point(Pose(8.0, 0.0), previous=1)  # 8 m from where it began, 100 m on the way there
+    behind_the_wall = graph.add_frontier(0, Pose(0.0, -5.0), 3.0)
+    ahead = graph.add_frontier(last, Pose(20.0, 0.0), 3.0)
+    choice = graph.choose(last)
+    assert choice is not None
+    assert choice.frontier is ahead
+    graph.take(ahead)
+    choice = graph.choose(last)
+    assert choice is not None
+    assert choice.frontier is behind_the_wall
+    assert math.isclose(choice.distance_m, math.hypot(8.0, 50.0) + 50.0 + 5.0)
+    assert choice.penalty > 0.99

@@ -8,7 +8,7 @@ from typing import ParamSpec
 
 import typer
 
-from reasoned_explorer.model import MissingDependencyError, PartError, ReasonedExplorerError, RecordError
+from reasoned_explorer.model import PartError, ReasonedExplorerError, RecordWriteError
 
 P = ParamSpec("P")
 
@@ -46,11 +46,7 @@ def answering(command: Callable[P, None]) -> Callable[P, None]:
 
 def code_of(error: ReasonedExplorerError) -> ExitCode:
     """Return the exit code that an error asks for."""
-    if isinstance(error, PartError):
-        return ExitCode.PART_FAILED
-    if isinstance(error, RecordError | MissingDependencyError):
-        return ExitCode.BAD_INPUT
-    return ExitCode.BAD_INPUT
+    return ExitCode.PART_FAILED if isinstance(error, PartError | RecordWriteError) else ExitCode.BAD_INPUT
 
 
 def complain(message: str) -> None:

@@ -12,7 +12,7 @@ from typing import Any, Self
 
 from pydantic import TypeAdapter, ValidationError
 
-from reasoned_explorer.model import Fault, RecordError
+from reasoned_explorer.model import Fault, RecordError, RecordWriteError
 from reasoned_explorer.model.record import RECORD_SCHEMA, EpisodeRecord, MissionHeader, MissionSummary, StepRecord
 
 RECORD_NAME = "record.jsonl"
@@ -29,19 +29,22 @@ class RecordWriter:
         folder: Of the record; made where it is not there. It must not hold a record already.
 
     Raises:
-        RecordError: If the folder cannot be made or holds a record; and from each write that fails (a full disk).
+        RecordError: If the folder cannot be made or holds a record.
+        RecordWriteError: From each line that cannot be written: the disk is full, say.
     """
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / RECORD_NAME
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            self._file = self.path.open("xb")
+            # Unbuffered: a killed process loses the step that it was in and no other.
+            self._file = self.path.open("xb", buffering=0)
         except FileExistsError as error:
             fault = Fault(f"{self.path} is there already", "a folder without a record", "give another folder")
             raise RecordError("record", [fault]) from error
         except OSError as error:
-            raise _write_error(self.path, error) from error
+            fault = Fault(f"{self.path} cannot be written: {error.strerror}", "a folder that can be written to")
+            raise RecordError("record", [fault]) from error
 
     def header(self, header: MissionHeader) -> None:
         """Write the first line."""
@@ -68,12 +71,12 @@ class RecordWriter:
         self.close()
 
     def _line(self, kind: bytes, payload: bytes) -> None:
+        rest = memoryview(b'{"' + kind + b'":' + payload + b"}\n")
         try:
-            self._file.write(b'{"' + kind + b'":' + payload + b"}\n")
-            # Handed to the system line by line: a killed process loses the step that it was in and no other.
-            self._file.flush()
-        except (OSError, ValueError) as error:
-            raise _write_error(self.path, error) from error
+            while rest:
+                rest = rest[self._file.write(rest) :]
+        except OSError as error:
+            raise RecordWriteError(f"record: {self.path} cannot be written: {error.strerror}") from error
 
 
 def read_record(folder: Path) -> EpisodeRecord:
@@ -136,9 +139,3 @@ def _read_header(path: Path, kind: str, payload: Any) -> MissionHeader:
 
 def _line_error(path: Path, number: int, what: str, expected: str) -> RecordError:
     return RecordError("record", [Fault(f"{path}, line {number} {what}", expected)])
-
-
-def _write_error(path: Path, error: Exception) -> RecordError:
-    reason = error.strerror if isinstance(error, OSError) else str(error)
-    fault = Fault(f"{path} cannot be written: {reason}", "a folder with room that can be written to")
-    return RecordError("record", [fault])

@@ -160,7 +160,7 @@ class Explorer:
         self._look_next = True
         if self._time_is_over():
             return self._time_over()
-        step.choice = self.graph.choose(self.parts.vehicle.pose)
+        step.choice = self.graph.choose(self._point)
         if step.choice is None:
             return await self._look_elsewhere(step)
         await self._travel(step, step.choice)
@@ -292,8 +292,9 @@ class Explorer:
             frontier = self.graph.add_frontier(
                 self._point, pose, score.q, forbidden=score.forbidden, blocked_by=blocked_by
             )
-            visited = self.graph.nearest_point(pose.x_m, pose.y_m, self.settings.revisit_radius_m)
-            if frontier.state is FrontierState.OPEN and visited not in (None, self._point):
+            if frontier.state is FrontierState.OPEN and self.graph.is_known(
+                pose.x_m, pose.y_m, self.settings.revisit_radius_m, besides=self._point
+            ):
                 self.graph.give_up(frontier, "already visited")
             look.frontiers[index] = frontier.id
             step.touched[frontier.id] = frontier

@@ -77,6 +77,10 @@ class RecordError(InputError):
     """A record of a mission that cannot be read or written."""
 
 
+class RecordWriteError(ReasonedExplorerError):
+    """A record that could not be written on while its mission ran: the disk is full, say. What was written stays."""
+
+
 class UnknownNameError(InputError):
     """A name that nothing is registered under, with the near misses.
 

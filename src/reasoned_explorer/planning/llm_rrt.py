@@ -7,6 +7,7 @@ Each described scene is expanded into ``children`` imagined scenes; each child i
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from types import UnionType
 
 from reasoned_explorer.minds.context import Minds
 from reasoned_explorer.model import Assessment, Fault, Goal, Scene, SettingsError
@@ -35,12 +36,14 @@ class LlmRrtSettings:
 
     def __post_init__(self) -> None:
         faults = []
-        if not 1 <= self.children <= 32:
-            faults.append(Fault(f"children is {self.children}", "1 to 32"))
-        if not 0 <= self.depth <= 16:
-            faults.append(Fault(f"depth is {self.depth}", "0 to 16"))
-        if not 0.0 < self.depth_weight <= 10.0:  # false for NaN too
-            faults.append(Fault(f"depth_weight is {self.depth_weight}", "above 0, at most 10"))
+        if not _is_number(self.children, int) or not 1 <= self.children <= 32:
+            faults.append(Fault(f"children is {self.children!r}", "a whole number from 1 to 32"))
+        if not _is_number(self.depth, int) or not 0 <= self.depth <= 16:
+            faults.append(Fault(f"depth is {self.depth!r}", "a whole number from 0 to 16"))
+        if not _is_number(self.depth_weight, int | float) or not 0.0 < self.depth_weight <= 10.0:  # NaN is refused, too
+            faults.append(Fault(f"depth_weight is {self.depth_weight!r}", "a number above 0 and at most 10"))
+        switches = {"include_own_score": self.include_own_score, "restart": self.restart}
+        faults += [Fault(f"{k} is {v!r}", "true or false") for k, v in switches.items() if not isinstance(v, bool)]
         if faults:
             raise SettingsError("LLM-RRT settings", faults)
 
@@ -112,6 +115,10 @@ class LlmRrt:
         first = min(node.scene.depth for node, _ in answered)
         nearest = [assessment for node, assessment in answered if node.scene.depth == first]
         return FrontierScore(total / weights, blocked=_all(nearest, "blocked"), forbidden=_all(nearest, "forbidden"))
+
+
+def _is_number(value: object, kind: type | UnionType) -> bool:
+    return isinstance(value, kind) and not isinstance(value, bool)
 
 
 def _all(assessments: list[Assessment], answer: str) -> bool:

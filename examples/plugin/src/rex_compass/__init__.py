@@ -58,15 +58,16 @@ def make_minds(context: MindContext) -> Minds:
 
 
 class Terse:
-    """Says of each view only the class of the nearest thing in it."""
+    """Says of each view only what is nearest in it, up to ten metres."""
 
     name = "terse"
     label = "terse (simulated)"
 
     async def describe(self, goal: Goal, views: Sequence[View]) -> Sequence[str]:
         """Describe all views at once."""
-        nearest = [view.content.sightings[0].class_name if view.content.sightings else "nothing" for view in views]
-        return [f"In the foreground there is a {name.replace('_', ' ')}." for name in nearest]
+        close = [[thing for thing in view.content.sightings if thing.distance_m <= 10.0] for view in views]
+        names = [things[0].class_name.replace("_", " ") if things else "nothing" for things in close]
+        return [f"In the foreground there is a {name}." for name in names]
 
 
 def make_captioner(context: CaptionerContext) -> Terse:

@@ -1,32 +1,53 @@
 """From the drawing board to the immutable world."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import shapely
 from shapely import Polygon
 
-from reasoned_explorer.world.generator.sketch import Footprint, Sketch
+from reasoned_explorer.world.generator.sketch import Footprint, Patch, Sketch
 from reasoned_explorer.world.taxonomy import Ground
 from reasoned_explorer.world.world import Building, Region, Ring, Way
 
 
 def rings_of(area: Polygon) -> tuple[Ring, tuple[Ring, ...]]:
     """Return the outer ring and the holes of a polygon, none with its closing point."""
-    outer = np.array(area.exterior.coords, float)[:-1, :2]
-    return outer, tuple(np.array(hole.coords, float)[:-1, :2] for hole in area.interiors)
+    return rings_of_all([area])[0]
 
 
-def regions_of(sketch: Sketch) -> tuple[Region, ...]:
+def rings_of_all(areas: Sequence[Polygon]) -> list[tuple[Ring, tuple[Ring, ...]]]:
+    """Return the outer ring and the holes of each of many polygons, none with its closing point."""
+    rings, owner = shapely.get_rings(np.array(areas, dtype=object), return_index=True)
+    corners, ring = shapely.get_coordinates(rings, return_index=True)
+    parts = np.split(corners, np.searchsorted(ring, np.arange(1, len(rings))))
+    found: list[list[Ring]] = [[] for _ in areas]
+    for place, part in zip(owner.tolist(), parts, strict=True):
+        found[place].append(np.ascontiguousarray(part[:-1]))
+    return [(outer, tuple(holes)) for outer, *holes in found]
+
+
+def ground_of(sketch: Sketch) -> list[Patch]:
     """Return the ground, cut at the border of the world; what nothing was drawn on is pavement."""
-    outer, holes = rings_of(sketch.box)
-    made = [Region(Ground.PAVEMENT, outer, holes)]
-    areas = np.array([patch.area for patch in sketch.patches])
-    cut = shapely.intersection(areas, sketch.box) if len(areas) else areas
-    for patch, area in zip(sketch.patches, cut, strict=True):
-        for part in shapely.get_parts(area):
-            if isinstance(part, Polygon) and part.area > 0.5:
-                outer, holes = rings_of(part)
-                made.append(Region(patch.ground, outer, holes, patch.name))
-    return tuple(made)
+    made = [Patch(Ground.PAVEMENT, sketch.box)]
+    if sketch.patches:
+        areas = np.array([patch.area for patch in sketch.patches])
+        inside = shapely.contains_properly(sketch.box, areas)
+        cut = areas.copy()
+        cut[~inside] = shapely.intersection(areas[~inside], sketch.box)
+        for patch, area, whole in zip(sketch.patches, cut, inside.tolist(), strict=True):
+            for part in (area,) if whole else shapely.get_parts(area):
+                if isinstance(part, Polygon) and part.area > 0.5:
+                    made.append(Patch(patch.ground, part, name=patch.name))
+    return made
+
+
+def regions_of(ground: Sequence[Patch]) -> tuple[Region, ...]:
+    """Return patches as regions."""
+    rings = rings_of_all([patch.area for patch in ground])
+    return tuple(
+        Region(patch.ground, outer, holes, patch.name) for patch, (outer, holes) in zip(ground, rings, strict=True)
+    )
 
 
 def ways_of(sketch: Sketch) -> tuple[Way, ...]:
@@ -46,16 +67,19 @@ def ways_of(sketch: Sketch) -> tuple[Way, ...]:
     return tuple(made)
 
 
-def building_of(footprint: Footprint, entrances: Ring) -> Building:
-    """Return a building with its entrances."""
-    outer, holes = rings_of(footprint.area)
-    return Building(
-        outer=outer,
-        height_m=footprint.height_m,
-        holes=holes,
-        kind=footprint.kind,
-        name=footprint.name,
-        entrances=entrances,
-        min_height_m=footprint.min_height_m,
-        height_source="height",
+def buildings_of(footprints: Sequence[Footprint], entrances: Sequence[Ring]) -> tuple[Building, ...]:
+    """Return buildings with their entrances."""
+    rings = rings_of_all([item.area for item in footprints])
+    return tuple(
+        Building(
+            outer=outer,
+            height_m=item.height_m,
+            holes=holes,
+            kind=item.kind,
+            name=item.name,
+            entrances=doors,
+            min_height_m=item.min_height_m,
+            height_source="height",
+        )
+        for item, (outer, holes), doors in zip(footprints, rings, entrances, strict=True)
     )

@@ -9,12 +9,11 @@ saturated counts (a class counts once, however many of it are near; compare Geye
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
+from reasoned_explorer.world.generator.affinity import Affinity, Pull, Statistics
 from reasoned_explorer.world.generator.ground import GroundPlan
 from reasoned_explorer.world.generator.habits import (
     ASSUMED_PER_KM2,
@@ -31,28 +30,10 @@ from reasoned_explorer.world.generator.sites import Role, Sites
 from reasoned_explorer.world.generator.sketch import Sketch
 from reasoned_explorer.world.taxonomy import CLASS_NAMES, OBJECT_CLASSES, Ground
 
-_RADIUS_M = 20.0
 _CODE = {name: code for code, name in enumerate(CLASS_NAMES)}
 #: What nothing that stands may reach into.
 _NEVER = np.isin(np.arange(len(Ground)), [Ground.ROAD, Ground.WATER, Ground.BUILDING, Ground.PATH, Ground.CYCLEWAY,
                                           Ground.STEPS, Ground.UNKNOWN])  # fmt: skip
-
-
-class Statistics(Protocol):
-    """What is known of real places; see `reasoned_explorer.knowledge`."""
-
-    @property
-    def density_per_km2(self) -> Mapping[str, float]:
-        """How many of each class stand on a square kilometre."""
-        ...
-
-    def lift(self, given: str, wanted: str) -> float:
-        """Return how much likelier a class is met within 20 m of another one; 1 where nothing is known."""
-        ...
-
-    def ground_lift(self, ground: str, class_name: str) -> float:
-        """Return how much likelier a class is met within 20 m of a ground; 1 where nothing is known."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,33 +61,10 @@ class Thing:
     outline: Points | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Pull:
-    """How strongly the statistics bend the draws.
-
-    Attributes:
-        pairs: Exponent of the lifts between classes.
-        grounds: Exponent of the lifts near grounds.
-        cap: Largest absolute log lift of one pair that counts.
-    """
-
-    pairs: float = 0.8
-    grounds: float = 0.5
-    cap: float = 3.5
-
-
 def standing_size(name: str) -> tuple[float, float, float]:
     """Return a class's usual size as extent across its front, depth and height, metres; vehicles face ahead."""
     length, depth, height = OBJECT_CLASSES[name].size_m
     return (depth, length, height) if OBJECT_CLASSES[name].kind == "vehicle" else (length, depth, height)
-
-
-def lift_matrix(statistics: Statistics) -> NDArray[np.float64]:
-    """Return the symmetric log lifts between all classes, shape (classes, classes)."""
-    lifts = np.array([[statistics.lift(a, b) for b in CLASS_NAMES] for a in CLASS_NAMES], float)
-    logs = np.log(np.maximum(lifts, 1e-3))
-    symmetric: NDArray[np.float64] = (logs + logs.T) / 2
-    return symmetric
 
 
 class Furnisher:
@@ -123,33 +81,19 @@ class Furnisher:
     def __init__(self, sketch: Sketch, plan: GroundPlan, sites: Sites, *, statistics: Statistics, pull: Pull) -> None:
         self._sketch, self._plan, self._sites, self._taken = sketch, plan, sites, Occupancy()
         self._density = statistics.density_per_km2
-        self._pull = pull
-        self._pairs = np.clip(lift_matrix(statistics), -pull.cap, pull.cap) * pull.pairs
-        #: Classes of which nothing is known move nothing.
-        self._felt = (self._pairs != 0).any(axis=1)
-        self._moved = [np.flatnonzero(row) for row in self._pairs]
-        count = len(sites.points)
-        grounds = np.log(
-            np.maximum([[statistics.ground_lift(g.name.lower(), c) for c in CLASS_NAMES] for g in Ground], 1e-2)
-        )
-        near = plan.near(sites.points).astype(float)
-        # One row a class: a class is drawn from its own row.
-        self._field = np.ascontiguousarray((near @ np.clip(grounds, -pull.cap, pull.cap) * pull.grounds).T)
-        self._present = np.zeros((len(CLASS_NAMES), count), bool)
-        self._used = np.zeros(count, bool)
+        self._affinity = Affinity(plan, statistics, pull)
+        self._cells = self._affinity.cells_of(sites.points)
+        self._used = np.zeros(len(sites.points), bool)
         self.things: list[Thing] = []
         self._landmarks: dict[tuple[str, int, int], list[tuple[float, float]]] = {}
         self._counts = np.zeros((len(CLASS_NAMES), len(sketch.zones)))
-        self._tree = shapely.STRtree(shapely.points(sites.points))
         #: What has been placed, by class, and is not yet felt.
         self._unfelt: dict[int, list[tuple[float, float]]] = {}
 
     def stand(self, thing: Thing, *, zone: int) -> None:
         """Take note of an object: where it stands nothing else can, and what is near it feels it."""
         self._note(thing, zone)
-        code = _CODE[thing.class_name]
-        if self._felt[code]:
-            self._unfelt.setdefault(code, []).append((thing.x_m, thing.y_m))
+        self._unfelt.setdefault(_CODE[thing.class_name], []).append((thing.x_m, thing.y_m))
 
     def stand_many(self, things: list[Thing], zones: list[int]) -> None:
         """Stand many objects, those left out for which there is no room."""
@@ -190,19 +134,7 @@ class Furnisher:
     def _feel(self) -> None:
         """Let the sites feel what was placed since the last time."""
         for code, spots in self._unfelt.items():
-            points = shapely.points(np.array(spots))
-            if len(spots) > 200:
-                # So many of a kind: each site asks for its nearest one.
-                _, gaps = shapely.STRtree(points).query_nearest(
-                    self._tree.geometries, return_distance=True, all_matches=False
-                )
-                near = np.flatnonzero(gaps < _RADIUS_M)
-            else:
-                near = np.unique(self._tree.query(points, predicate="dwithin", distance=_RADIUS_M)[1])
-            fresh = near[~self._present[code, near]]
-            self._present[code, fresh] = True
-            for row in self._moved[code].tolist():
-                self._field[row, fresh] += self._pairs[code, row]
+            self._affinity.feel(code, np.array(spots))
         self._unfelt.clear()
 
     def targets(self) -> NDArray[np.float64]:
@@ -242,22 +174,23 @@ class Furnisher:
         # Sites by zone, so that each zone is drawn from its own stretch.
         chosen = chosen[np.argsort(sites.zones[chosen], kind="stable")]
         stretches = np.searchsorted(sites.zones[chosen], np.arange(len(wanted) + 1))
-        affinity = np.log(liking[sites.roles[chosen]])
-        zones = sites.zones[chosen]
+        zones, cells = sites.zones[chosen], self._cells[chosen]
+        self._feel()
+        # Gumbel keys: the largest of a zone are a draw without replacement by weight.
+        keys = np.log(liking[sites.roles[chosen]]) + self._affinity.of(code, cells) + rng.gumbel(size=len(chosen))
         # Few large batches for common classes, single draws for rare ones, so that like finds like.
         for _ in range(12):
             batch = np.ceil(missing / 2.5).astype(int)
             if not batch.any():
                 return
             self._feel()
-            logits = affinity + self._field[code, chosen]
-            open_sites = ~self._used[chosen] & (missing[zones] > 0)
-            # Gumbel keys: the largest of a zone are a draw without replacement by weight.
-            keys = np.where(open_sites, logits + rng.gumbel(size=len(chosen)), -np.inf)
+            own = self._affinity.of_its_own(code, cells)
+            closed = self._used[chosen] | (missing[zones] <= 0)
+            now = np.where(closed, -np.inf, keys if own is None else keys + own)
             for zone in np.flatnonzero(batch).tolist():
                 low, high = int(stretches[zone]), int(stretches[zone + 1])
-                best = low + _largest(keys[low:high], 2 * int(batch[zone]) + 2)
-                best = best[np.isfinite(keys[best])]
+                best = low + _largest(now[low:high], 2 * int(batch[zone]) + 2)
+                best = best[np.isfinite(now[best])]
                 missing[zone] -= self._place(name, chosen[best], rng, int(batch[zone]), zone)
                 if not len(best):
                     missing[zone] = 0
@@ -295,6 +228,8 @@ class Furnisher:
             ]
             grounds = self._plan.at(np.vstack(corners)).reshape(5, -1)
             good = ~np.any(_NEVER[grounds], axis=0)
+        beside = cls.kind != "place" and name not in _MAY_BLOCK
+        ways: list[list[_Way]] = self._ways_past(candidates, points, sizes, looks) if beside else []
         placed = 0
         for index in np.flatnonzero(good).tolist():
             if placed >= most:

@@ -7,8 +7,9 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from reasoned_explorer.world.generator.assemble import building_of, regions_of, rings_of, ways_of
-from reasoned_explorer.world.generator.furniture import Furnisher, Pull, Statistics, Thing, standing_size
+from reasoned_explorer.world.generator.assemble import buildings_of, ground_of, regions_of, rings_of, ways_of
+from reasoned_explorer.world.generator.affinity import Pull, Statistics
+from reasoned_explorer.world.generator.furniture import Furnisher, Thing, standing_size
 from reasoned_explorer.world.generator.greenery import plant_bushes, plant_trees
 from reasoned_explorer.world.generator.ground import GroundPlan
 from reasoned_explorer.world.generator.shapes import Points, heading_of
@@ -41,10 +42,15 @@ def build_world(district: str, *, seed: int, size_m: float, statistics: Statisti
     else:
         fill_district(sketch, _zone(district))
     crossings = add_crossings(sketch)
-    regions, ways = regions_of(sketch), ways_of(sketch)
-    shells = tuple(building_of(item, np.empty((0, 2))) for item in sketch.footprints)
-    # Nothing may stand on a crossing: while things are placed it is carriageway.
-    plan = GroundPlan(regions, ways[: len(ways) - len(sketch.crossings)], shells, sketch.box)
+    ground, ways = ground_of(sketch), ways_of(sketch)
+    plan = GroundPlan(
+        [patch.area for patch in ground],
+        [patch.ground for patch in ground],
+        # Nothing may stand on a crossing: while things are placed it is carriageway.
+        ways[: len(ways) - len(sketch.crossings)],
+        [item.area for item in sketch.footprints],
+        sketch.box,
+    )
     sites = find_sites(sketch, plan, crossings)
     furnisher = Furnisher(sketch, plan, sites, statistics=statistics, pull=pull or Pull())
     _stand_areas(sketch, furnisher)
@@ -77,7 +83,7 @@ def build_world(district: str, *, seed: int, size_m: float, statistics: Statisti
     return World(
         name=f"{district}:{seed}@{size}",
         bounds=Bounds(-half, -half, half, half),
-        regions=regions,
+        regions=regions_of(ground),
         ways=ways,
         buildings=buildings,
         objects=objects,
@@ -109,14 +115,15 @@ def _stand_areas(sketch: Sketch, furnisher: Furnisher) -> None:
 
 
 def _equip(sketch: Sketch) -> None:
-    """Give every playground a slide, swings and benches to watch from, and pedestrian streets rows of bollards."""
+    """Give playgrounds a slide, a swing and a bench to watch from, pedestrian streets rows of bollards."""
     for index, patch in enumerate(sketch.patches):
         if patch.role != "playground":
             continue
         rng = sketch.rng("playground", index)
         middle, reach = patch.area.representative_point(), math.sqrt(patch.area.area / math.pi)
         turn = float(rng.uniform(0, 2 * math.pi))
-        names = ("slide", "swing", "bench", "swing", "bench")[: 3 if reach < 7.0 else 5]
+        # Equipment and benches are on the map for some playgrounds only; here they stand on most (assumed).
+        names = [name for name, share in (("slide", 0.8), ("swing", 0.7), ("bench", 0.3)) if rng.random() < share]
         for place, name in enumerate(names):
             angle = turn + place * 2 * math.pi / len(names)
             far = reach * (0.5 if name != "bench" else 0.85)
@@ -219,10 +226,10 @@ def _with_entrances(sketch: Sketch, plan: GroundPlan, sites: Sites, things: list
         wanted += points
         owner += [index] * len(points)
     if not wanted:
-        return tuple(building_of(item, np.empty((0, 2))) for item in sketch.footprints)
+        return buildings_of(sketch.footprints, [np.empty((0, 2))] * len(sketch.footprints))
     # Entrances lie on the outline to the millimetre.
     walls = np.array([item.area.exterior for item in sketch.footprints])[owner]
     at = shapely.line_interpolate_point(walls, shapely.line_locate_point(walls, shapely.points(np.array(wanted))))
     snapped = np.round(shapely.get_coordinates(at), 3)
     parts = np.split(snapped, np.searchsorted(owner, np.arange(1, len(sketch.footprints))))
-    return tuple(building_of(item, part) for item, part in zip(sketch.footprints, parts, strict=True))
+    return buildings_of(sketch.footprints, parts)

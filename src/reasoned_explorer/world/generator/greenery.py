@@ -54,9 +54,7 @@ def plant_trees(sketch: Sketch, plan: GroundPlan) -> tuple[Points, NDArray[np.fl
     clear = np.concatenate([np.full(len(at), margin) for at, _, margin in stands])
     good = np.isin(plan.at(points), _TREE_GROUND) & shapely.contains_xy(shapely.buffer(sketch.box, -0.6), points)
     good &= _clear_of_paths(sketch, points, clear)
-    if plan.walls is not None:
-        close, _ = plan.walls.query(shapely.points(points), predicate="dwithin", distance=2.2)
-        good[close] = False
+    good &= ~plan.by_a_wall(points, 2.2)
     points, crowns = points[good], crowns[good]
     kept = thin(points, 3.4)
     diameters: NDArray[np.float64] = np.round(np.clip(crowns[kept], 2.5, 13.0), 1)
@@ -69,7 +67,8 @@ def _street_trees(sketch: Sketch) -> Iterator[_Stand]:
             continue
         rng = sketch.rng("street trees", index)
         at, tangents = along(street.line, street.trees, start_m=6.0, end_m=6.0)
-        offset = (street.road_m / 2 + 1.1 if street.road_m > 0 else 2.6) * left_of(tangents)
+        # Close to the kerb, so that beside the trunk there is room to walk.
+        offset = (street.road_m / 2 + 0.6 if street.road_m > 0 else 2.6) * left_of(tangents)
         for side in (1.0, -1.0):
             keep = rng.random(len(at)) < 0.9
             yield (at + side * offset)[keep], rng.uniform(3.6, 6.0, int(keep.sum())), 1.2
@@ -113,9 +112,7 @@ def plant_bushes(sketch: Sketch, plan: GroundPlan) -> tuple[Points, NDArray[np.f
     good = np.isin(plan.at(points), (Ground.GRASS, Ground.WOOD, Ground.GARDEN, Ground.YARD))
     good &= shapely.contains_xy(shapely.buffer(sketch.box, -1.2), points)
     good &= _clear_of_paths(sketch, points, np.full(len(points), 1.3))
-    if plan.walls is not None:
-        close, _ = plan.walls.query(shapely.points(points), predicate="dwithin", distance=1.3)
-        good[close] = False
+    good &= ~plan.by_a_wall(points, 1.3)
     return points[good], width[good]
 
 

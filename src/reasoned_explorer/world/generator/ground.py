@@ -1,5 +1,7 @@
 """What ground is where, while a world is still on the drawing board."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import shapely
 from numpy.typing import NDArray
@@ -7,80 +9,77 @@ from shapely import LineString, Polygon
 
 from reasoned_explorer.world.generator.shapes import Points
 from reasoned_explorer.world.taxonomy import Ground
-from reasoned_explorer.world.world import Building, Region, Way
+from reasoned_explorer.world.world import Way
 
 Codes = NDArray[np.int8]
 _CELL_M = 0.5
-#: Cells of the coarse picture that `GroundPlan.near` looks at.
-_COARSE_M = 5.0
+#: Cells of the coarse picture that `GroundPlan.spread_out` returns.
+COARSE_M = 5.0
+#: How far "near" reaches.
+NEAR_M = 20.0
+_TURNS = np.arange(8) * (np.pi / 4)
 
 
 class GroundPlan:
     """A picture of the ground with cells of half a metre, painted in drawing order.
 
     Args:
-        regions: In drawing order.
+        areas: Regions in drawing order.
+        grounds: What each of them is.
         ways: In drawing order, above the regions.
-        buildings: Above all; roofs that one can walk under among them.
+        walls: Footprints of buildings, above all; of roofs that one can walk under, too.
         box: The world, a square.
     """
 
     def __init__(
-        self, regions: tuple[Region, ...], ways: tuple[Way, ...], buildings: tuple[Building, ...], box: Polygon
+        self,
+        areas: Sequence[Polygon],
+        grounds: Sequence[Ground],
+        ways: Sequence[Way],
+        walls: Sequence[Polygon],
+        box: Polygon,
     ) -> None:
-        areas = [Polygon(region.outer, region.holes) for region in regions]
         lines = np.array([LineString(way.line) for way in ways], dtype=object)
         widths = np.array([way.width_m for way in ways], float)
         beds = shapely.buffer(lines, widths / 2, quad_segs=3, cap_style="flat") if len(ways) else []
-        walls = [Polygon(building.outer, building.holes) for building in buildings]
-        codes = [region.ground for region in regions] + [way.ground for way in ways]
-        codes += [Ground.BUILDING] * len(walls)
-        self._origin = (float(box.bounds[0]), float(box.bounds[1]))
+        codes = [*grounds, *(way.ground for way in ways), *([Ground.BUILDING] * len(walls))]
+        #: South-west corner, metres.
+        self.origin = (float(box.bounds[0]), float(box.bounds[1]))
         self._cells = round((box.bounds[2] - box.bounds[0]) / _CELL_M)
-        self._picture = _painted([*areas, *beds, *walls], codes, self._origin, self._cells)
-        self.walls = shapely.STRtree(walls) if walls else None
-        self._near: NDArray[np.bool_] | None = None
+        self._picture = _painted([*areas, *beds, *walls], codes, self.origin, self._cells)
 
     def at(self, points: Points) -> Codes:
         """Return the ground codes at points, shape (n,), true to half a cell; `Ground.UNKNOWN` outside the world."""
-        rows = np.floor((points[:, 1] - self._origin[1]) / _CELL_M).astype(int)
-        columns = np.floor((points[:, 0] - self._origin[0]) / _CELL_M).astype(int)
+        rows = np.floor((points[:, 1] - self.origin[1]) / _CELL_M).astype(int)
+        columns = np.floor((points[:, 0] - self.origin[0]) / _CELL_M).astype(int)
         last = self._cells - 1
         inside = (rows >= 0) & (columns >= 0) & (rows <= last) & (columns <= last)
         codes = self._picture[np.clip(rows, 0, last), np.clip(columns, 0, last)]
         return np.where(inside, codes, np.int8(Ground.UNKNOWN))
 
-    def building_at(self, points: Points) -> NDArray[np.intp]:
-        """Return for each point the place of a building that it is in or on, or -1."""
-        result = np.full(len(points), -1)
-        if self.walls is not None and len(points):
-            point, wall = self.walls.query(shapely.points(points), predicate="dwithin", distance=1e-6)
-            result[point] = wall
-        return result
-
-    def near(self, points: Points) -> NDArray[np.bool_]:
-        """Return which grounds lie within about 20 m of points: shape (n, number of grounds)."""
-        if self._near is None:
-            self._near = self._spread_out()
-        rows = np.clip(((points[:, 1] - self._origin[1]) / _COARSE_M).astype(int), 0, self._near.shape[1] - 1)
-        columns = np.clip(((points[:, 0] - self._origin[0]) / _COARSE_M).astype(int), 0, self._near.shape[2] - 1)
-        found: NDArray[np.bool_] = self._near[:, rows, columns].T
+    def by_a_wall(self, points: Points, reach_m: float) -> NDArray[np.bool_]:
+        """Return which points have a building within a short reach (metres), in one of eight directions."""
+        found = np.zeros(len(points), bool)
+        for share in (1.0, 0.5) if reach_m > 1.0 else (1.0,):
+            for turn in _TURNS.tolist():
+                aside = share * reach_m * np.array([np.cos(turn), np.sin(turn)])
+                found |= self.at(points + aside) == Ground.BUILDING
         return found
 
-    def _spread_out(self) -> NDArray[np.bool_]:
-        step = round(_COARSE_M / _CELL_M)
+    def spread_out(self) -> NDArray[np.bool_]:
+        """Return which grounds lie within about 20 m: shape (grounds, rows, columns), cells of `COARSE_M`."""
+        step = round(COARSE_M / _CELL_M)
         picture = self._picture[step // 2 :: step, step // 2 :: step]
         rows, columns = picture.shape
-        reach = int(20.0 / _COARSE_M)
+        reach = int(NEAR_M / COARSE_M)
         near = np.zeros((len(Ground), rows, columns), bool)
         for code in np.unique(picture).tolist():
             padded = np.pad(picture == code, reach)
             for down in range(-reach, reach + 1):
-                for right in range(-reach, reach + 1):
-                    if down * down + right * right <= reach * reach:
-                        near[code] |= padded[
-                            reach + down : reach + down + rows, reach + right : reach + right + columns
-                        ]
+                half = int((reach * reach - down * down) ** 0.5)
+                line = padded[reach + down : reach + down + rows]
+                for right in range(-half, half + 1):
+                    near[code] |= line[:, reach + right : reach + right + columns]
         return near
 
 

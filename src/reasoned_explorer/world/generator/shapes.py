@@ -120,6 +120,48 @@ def along(line: Points, spacing_m: float, *, start_m: float = 0.0, end_m: float 
     return starts[segment] + tangents * (wanted - (ends - lengths)[segment])[:, None], tangents
 
 
+def along_many(
+    lines: Sequence[Points],
+    spacing_m: NDArray[np.float64] | float,
+    *,
+    start_m: NDArray[np.float64] | float = 0.0,
+    end_m: NDArray[np.float64] | float = 0.0,
+) -> tuple[Points, Points, NDArray[np.intp]]:
+    """Return evenly spaced points on many lines at once, as `along` does on one.
+
+    Args:
+        lines: Each of shape (n, 2).
+        spacing_m: Between neighbours, positive; for all lines or for each.
+        start_m: Left free at the beginning, likewise.
+        end_m: Left free at the end, likewise.
+
+    Returns:
+        Points, shape (k, 2), unit tangents, shape (k, 2), and which line each lies on, shape (k,).
+    """
+    if not len(lines):
+        return np.empty((0, 2)), np.empty((0, 2)), np.empty(0, np.intp)
+    number = len(lines)
+    spacing, start, end = (np.broadcast_to(np.asarray(x, float), number) for x in (spacing_m, start_m, end_m))
+    corners = np.vstack(lines)
+    owner = np.repeat(np.arange(number), [len(line) for line in lines])
+    steps = np.diff(corners, axis=0)
+    lengths = np.hypot(steps[:, 0], steps[:, 1])
+    real = (owner[1:] == owner[:-1]) & (lengths > 1e-9)
+    steps, lengths, starts, owner = steps[real], lengths[real], corners[:-1][real], owner[:-1][real]
+    ends = np.cumsum(lengths)
+    totals = np.bincount(owner, weights=lengths, minlength=number)
+    count = np.maximum(np.ceil((totals - end - start - spacing / 2) / spacing), 0).astype(int)
+    line = np.repeat(np.arange(number), count)
+    if not len(line):
+        return np.empty((0, 2)), np.empty((0, 2)), np.empty(0, np.intp)
+    first, beyond = np.searchsorted(owner, line), np.searchsorted(owner, line, side="right")
+    place = np.arange(len(line)) - np.repeat(np.cumsum(count) - count, count)
+    wanted = start[line] + spacing[line] * (place + 0.5) + (ends - lengths)[first]
+    segment = np.clip(np.searchsorted(ends, wanted), first, beyond - 1)
+    tangents = steps[segment] / lengths[segment, None]
+    return starts[segment] + tangents * (wanted - (ends - lengths)[segment])[:, None], tangents, line
+
+
 def heading_of(directions: Points) -> NDArray[np.float64]:
     """Return compass headings, radians clockwise from north, of direction vectors, shape (n, 2)."""
     headings: NDArray[np.float64] = np.arctan2(directions[:, 0], directions[:, 1]) % (2 * math.pi)

@@ -8,7 +8,7 @@ import shapely
 from numpy.typing import NDArray
 
 from reasoned_explorer.world.generator.ground import Codes, GroundPlan
-from reasoned_explorer.world.generator.shapes import Points, along, heading_of, left_of, spread
+from reasoned_explorer.world.generator.shapes import Points, along, along_many, heading_of, left_of, spread
 from reasoned_explorer.world.generator.sketch import Sketch
 from reasoned_explorer.world.generator.streets import Crossing
 from reasoned_explorer.world.taxonomy import Ground
@@ -81,21 +81,28 @@ def find_sites(sketch: Sketch, plan: GroundPlan, crossings: list[Crossing]) -> S
     """Return the sites of a sketch, those on unfit ground or too near a wall left out."""
     rng = sketch.rng("sites")
     found = _Collector()
-    for street in sketch.streets:
-        at, tangents = along(street.line, 3.4, start_m=float(rng.uniform(1, 3)), end_m=1.0)
-        normals = left_of(tangents)
-        offset = street.road_m / 2 + 0.55 if street.road_m > 0 else 2.2
-        for side in (1.0, -1.0):
-            # Looks away from the carriageway; in a pedestrian street towards its middle.
-            looks = heading_of(side * normals * (1.0 if street.road_m > 0 else -1.0))
-            found.add(at + side * offset * normals, looks, Role.KERB)
-    for trail in sketch.trails:
-        if trail.ground not in (Ground.PATH, Ground.PLAZA, Ground.PAVEMENT) or trail.width_m < 2.0:
-            continue
-        at, tangents = along(trail.line, 4.2, start_m=float(rng.uniform(0.5, 3)), end_m=1.0)
-        normals = left_of(tangents)
-        for side in (1.0, -1.0):
-            found.add(at + side * (trail.width_m / 2 + 0.75) * normals, heading_of(-side * normals), Role.VERGE)
+    streets = sketch.streets
+    at, tangents, line = along_many(
+        [street.line for street in streets], 3.4, start_m=rng.uniform(1, 3, len(streets)), end_m=1.0
+    )
+    roads = np.array([street.road_m for street in streets], float)[line]
+    offset = np.where(roads > 0, roads / 2 + 0.55, 2.2)[:, None]
+    for side in (1.0, -1.0):
+        aside = side * left_of(tangents)
+        # Looks away from the carriageway; in a pedestrian street towards its middle.
+        found.add(at + offset * aside, heading_of(aside * np.where(roads > 0, 1.0, -1.0)[:, None]), Role.KERB)
+    trails = [
+        trail
+        for trail in sketch.trails
+        if trail.ground in (Ground.PATH, Ground.PLAZA, Ground.PAVEMENT) and trail.width_m >= 2.0
+    ]
+    at, tangents, line = along_many(
+        [trail.line for trail in trails], 4.2, start_m=rng.uniform(0.5, 3, len(trails)), end_m=1.0
+    )
+    beyond = (np.array([trail.width_m for trail in trails], float)[line] / 2 + 0.75)[:, None]
+    for side in (1.0, -1.0):
+        aside = side * left_of(tangents)
+        found.add(at + beyond * aside, heading_of(-aside), Role.VERGE)
     _area_sites(sketch, found)
     for middle, ahead, half in crossings:
         across = left_of(ahead[None])[0]
@@ -133,28 +140,27 @@ def _area_sites(sketch: Sketch, found: _Collector) -> None:
             found.add(at + 0.9 * outward, heading_of(-outward), Role.VERGE)
 
 
-def _wall_sites(sketch: Sketch, plan: GroundPlan, found: _Collector) -> tuple[Points, NDArray[np.float64]]:
-    """Return doors: points on outer walls with the ground of a street or square before them, and where they look."""
-    walls = [item.area for item in sketch.footprints if item.min_height_m == 0]
-    if not walls:
-        return np.empty((0, 2)), np.empty(0)
-    doors, looks = [], []
-    for area in walls:
-        ring = np.asarray(area.exterior.coords)
-        at, tangents = along(ring, 5.5)
-        if len(at):
-            doors.append(at)
-            looks.append(left_of(tangents) * (-1.0 if area.exterior.is_ccw else 1.0))
-    at, outward = np.vstack(doors), np.vstack(looks)
-    before = plan.at(at + 1.4 * outward)
-    good = np.isin(before, [Ground.PAVEMENT, Ground.PLAZA, Ground.PATH])
+def _wall_sites(
+    sketch: Sketch, plan: GroundPlan, found: _Collector
+) -> tuple[Points, NDArray[np.float64], NDArray[np.intp]]:
+    """Return doors: points on outer walls with a street or square before them, where they look, and whose they are."""
+    homes = np.array([at for at, item in enumerate(sketch.footprints) if item.min_height_m == 0], np.intp)
+    if not len(homes):
+        return np.empty((0, 2)), np.empty(0), homes
+    walls = np.array([sketch.footprints[at].area.exterior for at in homes.tolist()])
+    corners, ring = shapely.get_coordinates(walls, return_index=True)
+    rings = np.split(corners, np.searchsorted(ring, np.arange(1, len(walls))))
+    at, tangents, wall = along_many(rings, 5.5)
+    outward = left_of(tangents) * np.where(shapely.is_ccw(walls), -1.0, 1.0)[wall][:, None]
+    good = np.isin(plan.at(at + 1.4 * outward), [Ground.PAVEMENT, Ground.PLAZA, Ground.PATH])
     at, outward = at[good], outward[good]
-    found.add(at + 0.75 * outward, heading_of(outward), Role.FRONT)
-    return at, heading_of(outward)
+    looks = heading_of(outward)
+    found.add(at + 0.75 * outward, looks, Role.FRONT)
+    return at, looks, homes[wall[good]]
 
 
 def _checked(sketch: Sketch, plan: GroundPlan, found: _Collector) -> Sites:
-    doors, looks = _wall_sites(sketch, plan, found)
+    doors, looks, homes = _wall_sites(sketch, plan, found)
     points = np.vstack(found.points) if found.points else np.empty((0, 2))
     headings, roles = np.concatenate(found.facing), np.concatenate(found.roles)
     inside = shapely.contains_xy(shapely.buffer(sketch.box, -0.8), points)
@@ -164,12 +170,9 @@ def _checked(sketch: Sketch, plan: GroundPlan, found: _Collector) -> Sites:
     for role, allowed in _ALLOWED.items():
         table[role, list(allowed)] = True
     keep = table[roles, grounds]
-    if plan.walls is not None and len(points):
-        close, _ = plan.walls.query(shapely.points(points), predicate="dwithin", distance=0.45)
-        keep[close] = False
+    keep[keep] = ~plan.by_a_wall(points[keep], 0.45)
     # The interior sites of a square or lawn that is crossed by paths lie on grass; they keep their role.
     points, headings, roles, grounds = points[keep], headings[keep], roles[keep], grounds[keep]
-    homes = plan.building_at(doors)
     points, headings = np.vstack([points, doors]), np.concatenate([headings, looks])
     roles = np.concatenate([roles, np.full(len(doors), Role.DOOR, np.int8)])
     grounds = np.concatenate([grounds, np.full(len(doors), Ground.BUILDING, np.int8)])
