@@ -7,9 +7,10 @@ from itertools import pairwise
 import numpy as np
 import shapely
 from numpy.random import Generator
+from numpy.typing import NDArray
 from shapely import LineString, Polygon
 
-from reasoned_explorer.world.generator.shapes import Points, blob, footprint, inner_circle, placed, polygons_of
+from reasoned_explorer.world.generator.shapes import Points, blob, footprint, inner_circle, left_of, placed, polygons_of
 from reasoned_explorer.world.generator.sketch import Footprint, Sketch, Zone
 from reasoned_explorer.world.taxonomy import Ground
 
@@ -54,12 +55,14 @@ def height_of(rng: Generator, levels: tuple[int, int]) -> float:
 def blocks_between(area: Polygon, beds: shapely.Geometry) -> list[Polygon]:
     """Return the blocks that streets leave of an area, from the south-west on; slivers are left out."""
     left = shapely.difference(area, beds)
-    found = [polygon for polygon in polygons_of(shapely.simplify(left, 0.6)) if polygon.area > 60.0]
+    found = [polygon for polygon in polygons_of(shapely.simplify(left, 0.25)) if polygon.area > 60.0]
     found.sort(key=lambda polygon: (round(polygon.centroid.y, 3), round(polygon.centroid.x, 3)))
     return found
 
 
-def _corner_free(ring: Points, clear_m: float, rng: Generator, frontage_m: tuple[float, float]) -> list[LineString]:
+def _corner_free(
+    ring: Points, clear_m: float, rng: Generator, frontage_m: tuple[float, float]
+) -> NDArray[np.object_]:
     """Return cuts across a block's rim, none of them near a sharp corner."""
     steps = np.diff(ring, axis=0)
     lengths = np.hypot(steps[:, 0], steps[:, 1])
@@ -68,27 +71,29 @@ def _corner_free(ring: Points, clear_m: float, rng: Generator, frontage_m: tuple
     turn = np.arccos(np.clip((directions * before).sum(1), -1, 1))
     starts = np.concatenate([[0.0], np.cumsum(lengths)])
     total = starts[-1]
-    corners = starts[:-1][turn > 0.4]
-    cuts: list[LineString] = []
+    corners = starts[:-1][turn > 0.4].tolist()
+    places: list[float] = []
     where = float(rng.uniform(0, frontage_m[0]))
     while where < total - 0.5 * frontage_m[0]:
-        away = np.abs(corners - where) if len(corners) else np.array([math.inf])
-        away = np.minimum(away, total - away)
-        if away.min() >= clear_m:
-            edge = min(int(np.searchsorted(starts, where, side="right")) - 1, len(lengths) - 1)
-            point = ring[edge] + directions[edge] * (where - starts[edge])
-            inward = np.array([-directions[edge][1], directions[edge][0]])
-            cuts.append(LineString([point - 1.0 * inward, point + (clear_m + 0.5) * inward]))
+        if all(min(abs(corner - where), total - abs(corner - where)) >= clear_m for corner in corners):
+            places.append(where)
             where += float(rng.uniform(*frontage_m))
         else:
             where += 2.0
+    if not places:
+        return np.empty(0, dtype=object)
+    at = np.array(places)
+    edge = np.minimum(np.searchsorted(starts, at, side="right") - 1, len(lengths) - 1)
+    foot = ring[edge] + directions[edge] * (at - starts[edge])[:, None]
+    inward = left_of(directions[edge])
+    cuts: NDArray[np.object_] = shapely.linestrings(np.stack([foot - inward, foot + (clear_m + 0.5) * inward], axis=1))
     return cuts
 
 
 def perimeter_block(sketch: Sketch, rng: Generator, block: Polygon, fabric: Fabric) -> None:
     """Build a block up around its rim, with a courtyard that a passage leads into."""
     depth = float(rng.uniform(*fabric.depth_m))
-    block = shapely.orient_polygons(shapely.simplify(block, 0.8))
+    block = shapely.orient_polygons(shapely.simplify(block, 0.3))
     court = shapely.buffer(block, -depth, join_style="mitre")
     base = height_of(rng, fabric.levels)
     if court.is_empty or court.area < 150.0:
@@ -98,7 +103,10 @@ def perimeter_block(sketch: Sketch, rng: Generator, block: Polygon, fabric: Fabr
     ring = np.asarray(block.exterior.coords)
     cuts = _corner_free(ring, depth, rng, fabric.frontage_m)
     pieces = polygons_of(shapely.polygonize([shapely.union_all([rim.boundary, *cuts])]))
-    lots = [piece for piece in pieces if piece.area > 20.0 and rim.contains(piece.representative_point())]
+    pieces = [piece for piece in pieces if piece.area > 20.0]
+    shapely.prepare(rim)
+    own = shapely.contains(rim, shapely.point_on_surface(np.array(pieces, dtype=object)))
+    lots = [piece for piece, is_own in zip(pieces, own.tolist(), strict=True) if is_own]
     # A passage as wide as a lorry into every courtyard, so that no ground is closed off.
     passage = _passage(rng, court, ring, sketch.box)
     sketch.lay(Ground.YARD, court, "courtyard")
@@ -112,13 +120,14 @@ def perimeter_block(sketch: Sketch, rng: Generator, block: Polygon, fabric: Fabr
             sketch.lay(Ground.PARKING, part, "carpark")
         elif choice < 0.75 and part.area > 300.0:
             sketch.lay(Ground.GRASS, shapely.buffer(shapely.buffer(part, -3.0), 3.0), "garden")
-    for lot in lots:
+    shapely.prepare(passage)
+    cut = shapely.intersects(passage, np.array(lots, dtype=object)).tolist()
+    for lot, is_cut in zip(lots, cut, strict=True):
         if rng.random() < fabric.gaps:
             sketch.lay(Ground.GARDEN if rng.random() < 0.4 else Ground.YARD, lot, "gap")
             continue
         height = base + _STOREY_M * float(rng.integers(-1, 2)) + float(rng.uniform(-0.6, 0.6))
-        area = shapely.difference(lot, passage)
-        for part in polygons_of(area):
+        for part in polygons_of(shapely.difference(lot, passage)) if is_cut else (lot,):
             if part.area > 25.0:
                 sketch.build(Footprint(part, round(max(height, 4.0), 1), fabric.zone, _use(rng, fabric)))
 

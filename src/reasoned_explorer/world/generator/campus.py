@@ -12,7 +12,7 @@ from reasoned_explorer.world.generator.park import lay_mesh, neighbours
 from reasoned_explorer.world.generator.shapes import (
     Points,
     blob,
-    bow,
+    bows,
     footprint,
     inner_circle,
     placed,
@@ -90,15 +90,22 @@ def _quads(sketch: Sketch, rng: Generator, inner: Polygon) -> list[Polygon]:
     grain = rng.uniform(0, math.pi)
     quads: list[Polygon] = []
     taken: list[Polygon] = []
+    middles: list[tuple[float, float]] = []
+    wide = shapely.buffer(inner, 3.0)
+    shapely.prepare(wide)
     for index in order.tolist():
         if len(quads) >= count:
             break
-        x, y = spots[index]
+        x, y = spots[index].tolist()
+        # So near to another quad there is no room for one, however it is turned.
+        if any(math.hypot(x - other_x, y - other_y) < 80.0 for other_x, other_y in middles):
+            continue
         width, depth = float(rng.uniform(48, 76)), float(rng.uniform(36, 52))
         heading = grain + float(rng.normal(0, 0.08)) + (math.pi / 2 if rng.random() < 0.4 else 0.0)
         room = placed(footprint("rect", width + 50, depth + 50, 1.0), x, y, heading)
-        if not room.within(inner.buffer(3.0)) or any(room.intersects(other) for other in taken):
+        if not shapely.contains(wide, room) or any(room.intersects(other) for other in taken):
             continue
+        middles.append((x, y))
         quad = placed(footprint("rect", width, depth, 1.0), x, y, heading)
         taken.append(room.buffer(6.0))
         quads.append(quad)
@@ -176,27 +183,33 @@ def _free_buildings(
     sketch: Sketch, rng: Generator, ground: shapely.Geometry, taken_areas: list[Polygon], first: int
 ) -> None:
     """Build halls and institutes wherever there is room, fronts to the middle of the campus or the road."""
-    taken = [area.buffer(8.0, quad_segs=2) for area in taken_areas]
-    taken += [item.area.buffer(13.0, quad_segs=2) for item in sketch.footprints[first:]]
-    room = shapely.buffer(ground, -6.0)
+    solid = [shapely.buffer(area, 8.0, quad_segs=2) for area in taken_areas]
+    solid += [shapely.buffer(item.area, 13.0, quad_segs=2) for item in sketch.footprints[first:]]
+    room = shapely.difference(shapely.buffer(ground, -6.0), shapely.union_all(solid))
     shapely.prepare(room)
     spots = spread(rng, shapely.buffer(ground, -15.0), 22.0, jitter=0.5)
+    number = len(spots)
     grain = rng.uniform(0, math.pi)
-    count = 0
-    for x, y in spots.tolist():
-        if count > ground.area / 6000.0:
+    kinds = np.array(["rect", "rect", "l", "u", "t"])[rng.integers(5, size=number)].tolist()
+    widths, depths = rng.uniform(22, 44, number).tolist(), rng.uniform(14, 28, number).tolist()
+    turns = (grain + math.pi / 2 * rng.integers(4, size=number) + rng.normal(0, 0.05, number)).tolist()
+    open_spots = shapely.contains_xy(room, spots).tolist() if number else []
+    built: list[tuple[float, float, Polygon]] = []
+    for index, (x, y) in enumerate(spots.tolist()):
+        if len(built) > ground.area / 6000.0:
             break
-        kind = str(rng.choice(["rect", "rect", "l", "u", "t"]))
-        width, depth = float(rng.uniform(22, 44)), float(rng.uniform(14, 28))
-        heading = grain + math.pi / 2 * int(rng.integers(4)) + float(rng.normal(0, 0.05))
-        area = placed(footprint(kind, width, depth, 11.0), x, y, heading)
-        if not room.contains(area) or any(area.intersects(other) for other in taken):
+        # In the least of buildings the middle is 7 m from any wall; 13 m lie between two.
+        near = [(math.hypot(x - at_x, y - at_y), area) for at_x, at_y, area in built]
+        if not open_spots[index] or any(gap < 20.0 for gap, _ in near):
             continue
-        taken.append(area.buffer(13.0, quad_segs=2))
+        width, depth, heading = widths[index], depths[index], turns[index]
+        area = placed(footprint(kinds[index], width, depth, 11.0), x, y, heading)
+        if not shapely.contains(room, area) or any(gap < 70.0 and area.intersects(other) for gap, other in near):
+            continue
+        built.append((x, y, area.buffer(13.0, quad_segs=2)))
         door = (x + math.sin(heading) * depth / 2, y + math.cos(heading) * depth / 2)
         kind_name, name = ("dormitory", "") if rng.random() < 0.3 else ("university", _NAMES[int(rng.integers(12))])
         sketch.build(Footprint(area, height_of(rng, (2, 6)), "campus", kind_name, door, name=name))
-        count += 1
 
 
 def _outside(sketch: Sketch, rng: Generator, parts: list[Polygon], taken: shapely.Geometry) -> None:
@@ -246,15 +259,28 @@ def _paths(
     wet = [item.area.buffer(2.5, quad_segs=2) for item in sketch.patches[bottom:] if item.role in ("pond", "pitch")]
     blocked = shapely.union_all([*walls, *wet, *(quad.buffer(-1.0) for quad in quads)])
     shapely.prepare(blocked)
-    pairs = [*neighbours(points, longest_m=150.0), *_nearest(points, 6)]
-    for one, other in dict.fromkeys((min(pair), max(pair)) for pair in pairs):
-        for sag in (float(rng.normal(0, 0.1)), 0.0, 0.2, -0.2):
-            line = bow(points[one], points[other], sag)
-            core = shapely.intersection(LineString(line), inner.buffer(3.0))
-            trimmed = shapely.difference(core, shapely.buffer(shapely.multipoints(points[[one, other]]), 4.2))
-            if not blocked.intersects(trimmed) and core.length > 0.9 * LineString(line).length:
-                sketch.pave(line, 2.4, Ground.PATH)
-                break
+    found = [*neighbours(points, longest_m=150.0), *_nearest(points, 6)]
+    pairs = np.array(list(dict.fromkeys((min(pair), max(pair)) for pair in found)))
+    room = shapely.buffer(inner, 3.0)
+    shapely.prepare(room)
+    sags = rng.normal(0, 0.1, len(pairs))
+    left = np.arange(len(pairs))
+    for sag in (sags, np.zeros(len(pairs)), np.full(len(pairs), 0.2), np.full(len(pairs), -0.2)):
+        if not len(left):
+            return
+        ends = points[pairs[left]]
+        curves = bows(ends[:, 0], ends[:, 1], sag[left])
+        lines = shapely.linestrings(curves)
+        # Where a path begins and ends there is a wall near, the one with the door.
+        free = shapely.difference(lines, shapely.buffer(shapely.multipoints(ends), 4.2, quad_segs=4))
+        inside = shapely.contains(room, lines)
+        inside[~inside] = shapely.length(shapely.intersection(lines[~inside], room)) > 0.9 * shapely.length(
+            lines[~inside]
+        )
+        good = inside & ~shapely.intersects(blocked, free)
+        for curve in curves[good]:
+            sketch.pave(curve, 2.4, Ground.PATH)
+        left = left[~good]
 
 
 def _nearest(points: Points, count: int) -> list[tuple[int, int]]:

@@ -31,6 +31,13 @@ from reasoned_explorer.world.generator.sketch import Sketch
 from reasoned_explorer.world.taxonomy import CLASS_NAMES, OBJECT_CLASSES, Ground
 
 _CODE = {name: code for code, name in enumerate(CLASS_NAMES)}
+#: Beside what stands on a pavement this much stays free to pass.
+_PASSAGE_M = 1.5
+#: Roles whose sites lie along an edge: deep things stand away from it; on a pavement people pass on the other side.
+_CLINGS = np.isin(np.arange(len(Role)), [Role.KERB, Role.FRONT])
+_BACK = np.where(_CLINGS, 1.0, np.where(np.arange(len(Role)) == Role.VERGE, -1.0, 0.0))
+#: Where nobody passes on foot.
+_NO_WAY = np.isin(np.arange(len(Ground)), [Ground.ROAD, Ground.WATER, Ground.BUILDING, Ground.UNKNOWN])
 #: What nothing that stands may reach into.
 _NEVER = np.isin(np.arange(len(Ground)), [Ground.ROAD, Ground.WATER, Ground.BUILDING, Ground.PATH, Ground.CYCLEWAY,
                                           Ground.STEPS, Ground.UNKNOWN])  # fmt: skip
@@ -180,7 +187,7 @@ class Furnisher:
         keys = np.log(liking[sites.roles[chosen]]) + self._affinity.of(code, cells) + rng.gumbel(size=len(chosen))
         # Few large batches for common classes, single draws for rare ones, so that like finds like.
         for _ in range(12):
-            batch = np.ceil(missing / 2.5).astype(int)
+            batch = np.ceil(missing / 2.0).astype(int)
             if not batch.any():
                 return
             self._feel()
@@ -191,21 +198,26 @@ class Furnisher:
                 low, high = int(stretches[zone]), int(stretches[zone + 1])
                 best = low + _largest(now[low:high], 2 * int(batch[zone]) + 2)
                 best = best[np.isfinite(now[best])]
-                missing[zone] -= self._place(name, chosen[best], rng, int(batch[zone]), zone)
+                placed, tried = self._place(name, chosen[best], rng, int(batch[zone]), zone)
+                missing[zone] -= placed
+                # What found no room once finds none later.
+                keys[best[:tried]] = -np.inf
                 if not len(best):
                     missing[zone] = 0
 
-    def _place(self, name: str, candidates: NDArray[np.intp], rng: np.random.Generator, most: int, zone: int) -> int:
-        """Place at most so many objects on the first candidates that have room; return how many."""
+    def _place(
+        self, name: str, candidates: NDArray[np.intp], rng: np.random.Generator, most: int, zone: int
+    ) -> tuple[int, int]:
+        """Place at most so many objects on the first candidates that have room; return how many, and how many tried."""
         if not len(candidates):
-            return 0
+            return 0, 0
         cls = OBJECT_CLASSES[name]
         sites = self._sites
         spread = SIZE_SPREAD.get(name, 0.0)
         scales = 1 + spread * rng.uniform(-1, 1, len(candidates))
-        headings = sites.headings[candidates].copy()
+        headings, roles = sites.headings[candidates].copy(), sites.roles[candidates]
         if name in ("traffic_sign", "traffic_signals", "bus_stop"):
-            headings = headings + np.where(sites.roles[candidates] == Role.CORNER, 0.0, math.pi)
+            headings = headings + np.where(roles == Role.CORNER, 0.0, math.pi)
         elif name == "person":
             headings = rng.uniform(0, 2 * math.pi, len(candidates))
         sizes = np.array(standing_size(name))[None, :] * scales[:, None]
@@ -213,11 +225,7 @@ class Furnisher:
         looks = np.column_stack([np.sin(sites.headings[candidates]), np.cos(sites.headings[candidates])])
         # Deep things stand back from the line that they stand on.
         back = np.maximum(sizes[:, 1] / 2 - 0.35, 0.0)
-        back = back * np.select(
-            [np.isin(sites.roles[candidates], [Role.KERB, Role.FRONT]), sites.roles[candidates] == Role.VERGE],
-            [1, -1],
-            0,
-        )
+        back = back * _BACK[roles]
         points = sites.points[candidates] + looks * back[:, None]
         good: NDArray[np.bool_] = np.ones(len(candidates), bool)
         if cls.kind != "place":
@@ -228,12 +236,19 @@ class Furnisher:
             ]
             grounds = self._plan.at(np.vstack(corners)).reshape(5, -1)
             good = ~np.any(_NEVER[grounds], axis=0)
-        beside = cls.kind != "place" and name not in _MAY_BLOCK
-        ways: list[list[_Way]] = self._ways_past(candidates, points, sizes, looks) if beside else []
+        narrow = (cls.kind != "place") & _CLINGS[roles] & (sites.grounds[candidates] == Ground.PAVEMENT)
+        # The strip on its open side that people pass on.
+        pass_at = points + looks * (sizes[:, 1:2] / 2 + _PASSAGE_M / 2)
+        wide = sizes[:, :2].max(axis=1)
+        if narrow.any():
+            far = looks * _PASSAGE_M / 2
+            aside = np.column_stack([looks[:, 1], -looks[:, 0]]) * wide[:, None] / 2
+            strip = np.vstack([pass_at, pass_at + far, pass_at + far + aside, pass_at + far - aside])
+            good &= ~(narrow & np.any(_NO_WAY[self._plan.at(strip)].reshape(4, -1), axis=0))
         placed = 0
         for index in np.flatnonzero(good).tolist():
             if placed >= most:
-                break
+                return placed, index
             x, y = float(points[index, 0]), float(points[index, 1])
             heading = float(headings[index] % (2 * math.pi))
             size = (float(sizes[index, 0]), float(sizes[index, 1]), float(sizes[index, 2]))
@@ -242,11 +257,17 @@ class Furnisher:
             if name in SPACING_M and self._crowded(name, x, y):
                 continue
             site = int(candidates[index])
+            if narrow[index]:
+                strip_x, strip_y = pass_at[index].tolist()
+                side = (float(sites.headings[site]), float(wide[index]), _PASSAGE_M)
+                if not self._taken.passable(strip_x, strip_y, *side):
+                    continue
+                self._taken.keep_open(strip_x, strip_y, *side)
             self._used[site] = True
             rounded = (round(size[0], 2), round(size[1], 2), round(size[2], 2))
             self.stand(Thing(name, x, y, heading, rounded, int(sites.buildings[site])), zone=zone)
             placed += 1
-        return placed
+        return placed, len(candidates)
 
 
 def _largest(keys: NDArray[np.float64], count: int) -> NDArray[np.intp]:

@@ -13,31 +13,31 @@ from reasoned_explorer.world.taxonomy import Ground
 
 #: Spacing of trees by what a patch is for, metres, and the share of the sites that are planted. Assumed.
 _PLANTING: dict[str, tuple[float, float]] = {
-    "wood": (5.6, 0.9),
-    "grove": (10.0, 0.6),
-    "park": (19.0, 0.4),
-    "meadow": (24.0, 0.3),
-    "picnic": (15.0, 0.5),
-    "campus": (17.0, 0.4),
-    "lawn": (16.0, 0.35),
-    "garden": (11.0, 0.4),
-    "gardens": (12.5, 0.45),
-    "courtyard": (13.0, 0.25),
-    "strip": (9.0, 0.5),
-    "verge": (7.0, 0.5),
-    "corner": (6.0, 0.6),
-    "plaza": (17.0, 0.18),
-    "forecourt": (13.0, 0.25),
-    "gap": (8.0, 0.4),
+    "wood": (8.5, 0.85),
+    "grove": (13.0, 0.5),
+    "park": (26.0, 0.35),
+    "meadow": (32.0, 0.3),
+    "picnic": (18.0, 0.45),
+    "campus": (25.0, 0.35),
+    "lawn": (20.0, 0.3),
+    "garden": (14.0, 0.35),
+    "gardens": (19.0, 0.45),
+    "courtyard": (16.0, 0.2),
+    "strip": (12.0, 0.5),
+    "verge": (10.0, 0.45),
+    "corner": (9.0, 0.5),
+    "plaza": (22.0, 0.15),
+    "forecourt": (18.0, 0.2),
+    "gap": (10.0, 0.35),
 }
 _BUSHES: dict[str, tuple[float, float]] = {
-    "garden": (5.0, 0.35),
-    "gardens": (7.0, 0.3),
-    "wood": (11.0, 0.4),
+    "garden": (7.0, 0.35),
+    "gardens": (10.0, 0.3),
+    "wood": (14.0, 0.4),
     "park": (30.0, 0.3),
-    "verge": (4.0, 0.3),
+    "verge": (6.0, 0.3),
     "campus": (26.0, 0.3),
-    "courtyard": (9.0, 0.2),
+    "courtyard": (12.0, 0.2),
 }
 #: Points, diameters of crowns, margin to paths.
 _Stand = tuple[Points, NDArray[np.float64], float]
@@ -70,8 +70,8 @@ def _street_trees(sketch: Sketch) -> Iterator[_Stand]:
         # Close to the kerb, so that beside the trunk there is room to walk.
         offset = (street.road_m / 2 + 0.6 if street.road_m > 0 else 2.6) * left_of(tangents)
         for side in (1.0, -1.0):
-            keep = rng.random(len(at)) < 0.9
-            yield (at + side * offset)[keep], rng.uniform(3.6, 6.0, int(keep.sum())), 1.2
+            keep = rng.random(len(at)) < 0.8
+            yield (at + side * offset)[keep], rng.uniform(3.6, 6.0, int(keep.sum())), 0.5
 
 
 def _alleys(sketch: Sketch) -> Iterator[_Stand]:

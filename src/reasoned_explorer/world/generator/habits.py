@@ -15,7 +15,7 @@ _P, _L, _C, _D = Role.PLAY, Role.LOT, Role.CORNER, Role.DOOR
 
 #: Relative liking of a class for sites of a role; roles that are not named are never taken. Assumed.
 ROLE_LIKING: Mapping[str, Mapping[Role, float]] = {
-    "bench": {_V: 3.0, _O: 1.0, _K: 0.25, _F: 0.5, _P: 0.6},
+    "bench": {_V: 3.0, _O: 1.0, _K: 0.25, _F: 0.5, _P: 0.05},
     "picnic_table": {_G: 2.0, _V: 1.0, _P: 1.0},
     "outdoor_seating": {_O: 1.0, _F: 0.5},
     "waste_basket": {_V: 1.5, _K: 0.8, _O: 0.8, _F: 0.3, _P: 1.0},
@@ -62,11 +62,11 @@ ROLE_LIKING: Mapping[str, Mapping[Role, float]] = {
 }
 
 #: Things per square kilometre of what maps hold too seldom to be counted from them. Assumed.
-ASSUMED_PER_KM2: Mapping[str, float] = {"person": 900.0, "bicycle": 260.0}
+ASSUMED_PER_KM2: Mapping[str, float] = {"person": 450.0, "bicycle": 220.0}
 #: A class that data lack altogether, or nearly, still stands here and there, per square kilometre. Assumed.
 LEAST_PER_KM2: Mapping[str, float] = {
     "fire_hydrant": 25.0, "street_lamp": 250.0, "traffic_sign": 60.0, "traffic_signals": 30.0,
-    "planter": 40.0, "flagpole": 12.0, "clock": 3.0, "picnic_table": 12.0, "outdoor_seating": 15.0, "shelter": 10.0,
+    "planter": 40.0, "flagpole": 12.0, "picnic_table": 12.0, "outdoor_seating": 15.0, "shelter": 10.0,
     "telephone": 4.0, "charging_station": 8.0, "parking_meter": 18.0, "post_box": 12.0, "recycling": 8.0,
     "vending_machine": 10.0, "advertising": 8.0, "bicycle_rental": 6.0, "drinking_water": 3.0,
     "bus_stop": 16.0, "information": 20.0, "toilets": 3.0, "library": 1.5, "museum": 2.0,

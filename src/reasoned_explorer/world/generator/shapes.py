@@ -182,6 +182,16 @@ def bow(start: Sequence[float], end: Sequence[float], sag: float, *, count: int 
     return curve
 
 
+def bows(starts: Points, ends: Points, sags: NDArray[np.float64], *, count: int = 8) -> Points:
+    """Return many curves as `bow` does one: from points of shape (n, 2) curves of shape (n, count, 2)."""
+    a, b = starts[:, None], ends[:, None]
+    aside = np.stack([starts[:, 1] - ends[:, 1], ends[:, 0] - starts[:, 0]], axis=-1)[:, None]
+    middle = (a + b) / 2 + 2 * sags[:, None, None] * aside
+    t = np.linspace(0, 1, count)[None, :, None]
+    curves: Points = (1 - t) ** 2 * a + 2 * t * (1 - t) * middle + t**2 * b
+    return curves
+
+
 def spread(rng: Generator, area: Polygon, spacing_m: float, *, jitter: float = 0.4) -> Points:
     """Return points that fill a polygon: a turned grid with each point jittered by a share of the spacing."""
     if area.is_empty:

@@ -155,7 +155,7 @@ def _wall_sites(
     good = np.isin(plan.at(at + 1.4 * outward), [Ground.PAVEMENT, Ground.PLAZA, Ground.PATH])
     at, outward = at[good], outward[good]
     looks = heading_of(outward)
-    found.add(at + 0.75 * outward, looks, Role.FRONT)
+    found.add(at + 0.6 * outward, looks, Role.FRONT)
     return at, looks, homes[wall[good]]
 
 

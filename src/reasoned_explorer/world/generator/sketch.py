@@ -148,6 +148,12 @@ class Sketch:
 
     def build(self, footprint: Footprint) -> None:
         """Draw a building, cut at the border of the world; slivers are left out."""
+        low_x, low_y, high_x, high_y = self.box.bounds
+        min_x, min_y, max_x, max_y = footprint.area.bounds
+        if min_x > low_x and min_y > low_y and max_x < high_x and max_y < high_y:
+            footprint.area = shapely.simplify(footprint.area, 0.05)
+            self.footprints.append(footprint)
+            return
         inside = shapely.intersection(footprint.area, self.box)
         for part in polygons_of(inside):
             if part.area >= 0.55 * footprint.area.area or part.area > 80.0:

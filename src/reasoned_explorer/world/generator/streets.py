@@ -31,8 +31,8 @@ WIDTHS_M: dict[str, tuple[float, float]] = {
     "primary": (13.0, 4.5),
     "secondary": (11.0, 4.0),
     "residential": (9.0, 3.2),
-    "living_street": (7.5, 2.2),
-    "service": (5.5, 1.6),
+    "living_street": (7.5, 2.6),
+    "service": (5.5, 2.5),
     "pedestrian": (0.0, 4.5),
 }
 
@@ -56,7 +56,7 @@ def add_street(
     name = street_name(rng)
     parking = kind in ("residential", "secondary", "living_street") and rng.random() < 0.85
     lined = {"primary": 0.9, "secondary": 0.7, "residential": 0.45, "living_street": 0.5, "pedestrian": 0.5}
-    spacing = float(rng.uniform(8.0, 13.0)) if rng.random() < lined.get(kind, 0.0) else 0.0
+    spacing = float(rng.uniform(10.0, 16.0)) if rng.random() < lined.get(kind, 0.0) else 0.0
     cut = shapely.intersection(LineString(line), sketch.box if within is None else within)
     pieces = [
         Street(part, kind, road, pavement, parking, spacing if trees is None else trees, name)

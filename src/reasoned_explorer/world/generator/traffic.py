@@ -24,7 +24,7 @@ def park_cars(sketch: Sketch, plan: GroundPlan, crossings: list[Crossing]) -> tu
         if not street.parking:
             continue
         rng = sketch.rng("kerb cars", index)
-        busy = float(rng.uniform(0.35, 0.75))
+        busy = float(rng.uniform(0.25, 0.65))
         at, tangents = along(street.line, _KERB_PITCH_M, start_m=3.0, end_m=3.0)
         normals = left_of(tangents)
         # Traffic keeps to the right: cars on the right of a line head along it.
@@ -76,7 +76,7 @@ def _bays(sketch: Sketch) -> tuple[Points, NDArray[np.float64]]:
         if patch.role != "carpark":
             continue
         rng = sketch.rng("bays", index)
-        busy = float(rng.uniform(0.45, 0.85))
+        busy = float(rng.uniform(0.35, 0.75))
         for lot in polygons_of(patch.area):
             at, heading = _rows(lot)
             keep = rng.random(len(at)) < busy
