@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from reasoned_explorer.evaluation.mission import Mission, MissionSettings, run_mission
+from reasoned_explorer.evaluation.mission import Mission, MissionSettings, run_mission, traveller_of
 from reasoned_explorer.evaluation.record_file import read_record
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
@@ -107,7 +107,7 @@ def test_the_same_in_a_real_place(osm_folder: Path) -> None:
 
 
 def _all_found(atlas: Atlas, *, count: int) -> None:
-    traveller = Mission("Find me a tree", atlas, ORACLE).judge.traveller
+    traveller = traveller_of(PROFILES["drone"])
     sampling = SamplingSettings(camera_height_m=PROFILES["drone"].camera_height_m)
     episodes = sample_episodes(atlas, count=count, seed=5, traveller=traveller, settings=sampling)
     assert len(episodes) == count

@@ -292,9 +292,8 @@ class Explorer:
             frontier = self.graph.add_frontier(
                 self._point, pose, score.q, forbidden=score.forbidden, blocked_by=blocked_by
             )
-            if frontier.state is FrontierState.OPEN and self.graph.is_known(
-                pose.x_m, pose.y_m, self.settings.revisit_radius_m, besides=self._point
-            ):
+            visited = self.graph.nearest_point(pose.x_m, pose.y_m, self.settings.revisit_radius_m)
+            if frontier.state is FrontierState.OPEN and visited not in (None, self._point):
                 self.graph.give_up(frontier, "already visited")
             look.frontiers[index] = frontier.id
             step.touched[frontier.id] = frontier

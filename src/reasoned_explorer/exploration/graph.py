@@ -97,26 +97,6 @@ class TopologicalGraph:
                 best, best_m = index, distance_m
         return best
 
-    def is_known(self, x_m: float, y_m: float, radius_m: float, *, besides: int) -> bool:
-        """Return whether a place lies within a radius of where the robot has been: path points and the legs between.
-
-        Args:
-            x_m: East, metres.
-            y_m: North, metres.
-            radius_m: Metres.
-            besides: A path point that does not count, nor do the legs that end there: what it lies next to is new.
-        """
-        for one, others in self.edges.items():
-            if one == besides:
-                continue
-            start = self.points[one]
-            if math.hypot(start.x_m - x_m, start.y_m - y_m) <= radius_m:
-                return True
-            for other in others:
-                if one < other != besides and _off_leg_m(x_m, y_m, start, self.points[other]) <= radius_m:
-                    return True
-        return False
-
     def add_frontier(
         self, parent: int, pose: Pose, q: float | None, *, forbidden: bool = False, blocked_by: str = ""
     ) -> Frontier:
@@ -210,14 +190,3 @@ class TopologicalGraph:
                     length_m[other], came_from[other] = longer_m, point
                     heapq.heappush(queue, (longer_m, other))
         return came_from, length_m
-
-
-def _off_leg_m(x_m: float, y_m: float, start: Pose, end: Pose) -> float:
-    """Return the distance of a place from the straight leg between two poses, metres."""
-    east_m, north_m = end.x_m - start.x_m, end.y_m - start.y_m
-    squared = east_m * east_m + north_m * north_m
-    if squared == 0.0:
-        return math.hypot(x_m - start.x_m, y_m - start.y_m)
-    share = ((x_m - start.x_m) * east_m + (y_m - start.y_m) * north_m) / squared
-    share = min(1.0, max(0.0, share))
-    return math.hypot(x_m - start.x_m - share * east_m, y_m - start.y_m - share * north_m)

@@ -21,8 +21,7 @@ class ExplorerSettings:
         sharpness_per_m: k of σ(d) (C: 0.5).
         half_distance_m: d0 of σ(d), metres (C: 60).
         merge_radius_m: Path points nearer than this are one (O).
-        revisit_radius_m: A new frontier nearer than this to an older path point, or to a leg between two, was already
-            visited (O: the shortest step, which is half of what counts as close by).
+        revisit_radius_m: A new frontier nearer than this to an older path point was already visited (O).
         look_back_after_stop: Whether the look after a leg that something stopped takes in what lies behind, too, with N
             views more: what lies ahead is then known to be blocked (O).
         max_faults_in_a_row: Faults of parts without a sound step between them that end the mission (O).
@@ -38,7 +37,7 @@ class ExplorerSettings:
     sharpness_per_m: float = 0.5
     half_distance_m: float = 60.0
     merge_radius_m: float = 1.5
-    revisit_radius_m: float = 5.0
+    revisit_radius_m: float = 3.0
     look_back_after_stop: bool = True
     max_faults_in_a_row: int = 3
 

@@ -1,8 +1,9 @@
 """How much each class is drawn to each spot by what lies and stands around it.
 
 Kept on a coarse picture of the world: for a cell, which grounds lie and which classes stand within about 20 m. What a
-class makes of that is one product of its log lifts with the picture. Log lifts are rounded to multiples of 2⁻¹², whose
-sums are exact in single precision: the answer does not depend on the order in which a processor adds.
+class makes of that is the sum of its log lifts over the picture. Log lifts are rounded to multiples of 2⁻¹², whose sums
+are exact in single precision: the answer is the same on every processor. They are added up row by row and not by a
+matrix product, whose threads would cost more than they bring.
 """
 
 from collections.abc import Mapping
@@ -83,6 +84,7 @@ class Affinity:
         self._rows = near.shape[1] + 2 * _REACH
         self._origin = plan.origin
         self._present = np.zeros((len(CLASS_NAMES), self._near.shape[1]), np.float32)
+        self._on_the_map, self._standing = near.any(axis=(1, 2)), np.zeros(len(CLASS_NAMES), bool)
         steps = np.arange(-_REACH, _REACH + 1)
         down, right = np.meshgrid(steps, steps, indexing="ij")
         self._disc = (down * self._columns + right)[down**2 + right**2 <= _REACH**2]
@@ -100,13 +102,21 @@ class Affinity:
         """Take note that things of a class stand at points, shape (n, 2)."""
         if self._felt[code] and len(points):
             self._present[code, self.cells_of(points)[:, None] + self._disc] = 1.0
+            self._standing[code] = True
 
     def of(self, code: int, cells: NDArray[np.intp]) -> Logs:
         """Return a class's log affinity to cells, its own kind left out."""
         others = self._pairs[code].copy()
         others[code] = 0.0
-        whole: Logs = self._grounds[code] @ self._near + others @ self._present
-        return whole[cells]
+        whole = np.zeros(self._near.shape[1], np.float32)
+        for logs, rows, there in (
+            (self._grounds[code], self._near, self._on_the_map),
+            (others, self._present, self._standing),
+        ):
+            for row in np.flatnonzero((logs != 0) & there).tolist():
+                whole += logs[row] * rows[row]
+        found: Logs = whole[cells]
+        return found
 
     def of_its_own(self, code: int, cells: NDArray[np.intp]) -> Logs | None:
         """Return what its own kind adds to a class's log affinity to cells, or None where that is nothing."""

@@ -18,6 +18,8 @@ def rings_of(area: Polygon) -> tuple[Ring, tuple[Ring, ...]]:
 
 def rings_of_all(areas: Sequence[Polygon]) -> list[tuple[Ring, tuple[Ring, ...]]]:
     """Return the outer ring and the holes of each of many polygons, none with its closing point."""
+    if not areas:
+        return []
     rings, owner = shapely.get_rings(np.array(areas, dtype=object), return_index=True)
     corners, ring = shapely.get_coordinates(rings, return_index=True)
     parts = np.split(corners, np.searchsorted(ring, np.arange(1, len(rings))))

@@ -1,6 +1,7 @@
 """City blocks: what lies between streets, cut into lots and built up."""
 
 import math
+from bisect import bisect
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -71,11 +72,14 @@ def _corner_free(
     turn = np.arccos(np.clip((directions * before).sum(1), -1, 1))
     starts = np.concatenate([[0.0], np.cumsum(lengths)])
     total = starts[-1]
-    corners = starts[:-1][turn > 0.4].tolist()
+    corners = starts[:-1][turn > 0.4].tolist() or [-math.inf, math.inf]
+    # The ring closes: before its beginning comes its last corner.
+    around = [corners[-1] - total, *corners, corners[0] + total]
     places: list[float] = []
     where = float(rng.uniform(0, frontage_m[0]))
     while where < total - 0.5 * frontage_m[0]:
-        if all(min(abs(corner - where), total - abs(corner - where)) >= clear_m for corner in corners):
+        place = bisect(around, where)
+        if where - around[place - 1] >= clear_m and around[place] - where >= clear_m:
             places.append(where)
             where += float(rng.uniform(*frontage_m))
         else:

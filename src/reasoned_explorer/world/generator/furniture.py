@@ -194,23 +194,29 @@ class Furnisher:
             own = self._affinity.of_its_own(code, cells)
             closed = self._used[chosen] | (missing[zones] <= 0)
             now = np.where(closed, -np.inf, keys if own is None else keys + own)
+            found: list[NDArray[np.intp]] = []
             for zone in np.flatnonzero(batch).tolist():
                 low, high = int(stretches[zone]), int(stretches[zone + 1])
                 best = low + _largest(now[low:high], 2 * int(batch[zone]) + 2)
-                best = best[np.isfinite(now[best])]
-                placed, tried = self._place(name, chosen[best], rng, int(batch[zone]), zone)
-                missing[zone] -= placed
-                # What found no room once finds none later.
-                keys[best[:tried]] = -np.inf
-                if not len(best):
+                found.append(best[np.isfinite(now[best])])
+                if not len(found[-1]):
                     missing[zone] = 0
+            best = np.concatenate(found)
+            placed, tried = self._place(name, chosen[best], rng, batch)
+            missing -= placed
+            # What found no room once finds none later.
+            keys[best[tried]] = -np.inf
 
     def _place(
-        self, name: str, candidates: NDArray[np.intp], rng: np.random.Generator, most: int, zone: int
-    ) -> tuple[int, int]:
-        """Place at most so many objects on the first candidates that have room; return how many, and how many tried."""
+        self, name: str, candidates: NDArray[np.intp], rng: np.random.Generator, most: NDArray[np.intp]
+    ) -> tuple[NDArray[np.intp], list[int]]:
+        """Place at most so many objects in each zone on the first candidates that have room.
+
+        Returns:
+            How many were placed in each zone, and which of the candidates were looked at.
+        """
         if not len(candidates):
-            return 0, 0
+            return np.zeros_like(most), []
         cls = OBJECT_CLASSES[name]
         sites = self._sites
         spread = SIZE_SPREAD.get(name, 0.0)
@@ -245,10 +251,14 @@ class Furnisher:
             aside = np.column_stack([looks[:, 1], -looks[:, 0]]) * wide[:, None] / 2
             strip = np.vstack([pass_at, pass_at + far, pass_at + far + aside, pass_at + far - aside])
             good &= ~(narrow & np.any(_NO_WAY[self._plan.at(strip)].reshape(4, -1), axis=0))
-        placed = 0
+        left = most.tolist()
+        tried = np.flatnonzero(~good).tolist()
+        zones = sites.zones[candidates].tolist()
         for index in np.flatnonzero(good).tolist():
-            if placed >= most:
-                return placed, index
+            zone = zones[index]
+            if left[zone] <= 0:
+                continue
+            tried.append(index)
             x, y = float(points[index, 0]), float(points[index, 1])
             heading = float(headings[index] % (2 * math.pi))
             size = (float(sizes[index, 0]), float(sizes[index, 1]), float(sizes[index, 2]))
@@ -266,8 +276,8 @@ class Furnisher:
             self._used[site] = True
             rounded = (round(size[0], 2), round(size[1], 2), round(size[2], 2))
             self.stand(Thing(name, x, y, heading, rounded, int(sites.buildings[site])), zone=zone)
-            placed += 1
-        return placed, len(candidates)
+            left[zone] -= 1
+        return most - np.array(left, most.dtype), tried
 
 
 def _largest(keys: NDArray[np.float64], count: int) -> NDArray[np.intp]:

@@ -152,6 +152,15 @@ def _wall_sites(
     rings = np.split(corners, np.searchsorted(ring, np.arange(1, len(walls))))
     at, tangents, wall = along_many(rings, 5.5)
     outward = left_of(tangents) * np.where(shapely.is_ccw(walls), -1.0, 1.0)[wall][:, None]
+    # Houses whose front door a path leads to.
+    fronts = [at for at in homes.tolist() if sketch.footprints[at].entrance is not None]
+    if fronts:
+        front = np.array([sketch.footprints[at].entrance for at in fronts], float)
+        middle = shapely.get_coordinates(shapely.centroid([sketch.footprints[at].area for at in fronts]))
+        away = front - middle
+        away /= np.maximum(np.hypot(away[:, 0], away[:, 1]), 1e-6)[:, None]
+        at, outward = np.vstack([at, front]), np.vstack([outward, away])
+        wall = np.concatenate([wall, np.searchsorted(homes, fronts)])
     good = np.isin(plan.at(at + 1.4 * outward), [Ground.PAVEMENT, Ground.PLAZA, Ground.PATH])
     at, outward = at[good], outward[good]
     looks = heading_of(outward)

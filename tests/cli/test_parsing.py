@@ -1,0 +1,69 @@
+import math
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from reasoned_explorer.cli.parsing import parse_bbox, parse_settings, parse_start
+from reasoned_explorer.geometry import GeoOrigin
+from reasoned_explorer.model import ReasonedExplorerError, SettingsError, StartError, WorldError
+from tests.world.worlds import courtyard
+
+HERE = courtyard()
+MUNICH = replace(HERE, origin=GeoOrigin(48.1374, 11.5755))
+
+
+def test_a_start_in_a_generated_world_is_in_metres() -> None:
+    start = parse_start("12.5,-3,90", HERE)
+    assert start is not None
+    assert (start.x_m, start.y_m) == (12.5, -3.0)
+    assert start.heading_rad == pytest.approx(math.pi / 2)
+
+
+def test_a_start_in_a_real_place_is_on_earth() -> None:
+    start = parse_start("48.1383, 11.5755, -90", MUNICH)
+    assert start is not None
+    assert start.x_m == pytest.approx(0.0, abs=0.01)
+    assert start.y_m == pytest.approx(100.1, abs=0.2)
+    assert start.heading_rad == pytest.approx(1.5 * math.pi)
+
+
+def test_the_heading_may_be_left_out_and_is_then_north() -> None:
+    start = parse_start("1,2", HERE)
+    assert start is not None
+    assert start.heading_rad == 0.0
+
+
+def test_all_faults_of_a_start_are_told_at_once() -> None:
+    with pytest.raises(StartError) as raised:
+        parse_start("nan,north", HERE)
+    assert len(raised.value.faults) == 2
+    with pytest.raises(StartError, match="latitude comes first"):
+        parse_start("111.57,48.13,0", MUNICH)
+
+
+@pytest.mark.parametrize("text", ["", "1,2,3", "1,2,3,four", "1,2,3,inf"])
+def test_a_bounding_box_is_four_numbers(text: str) -> None:
+    with pytest.raises(WorldError, match="lon0,lat0,lon1,lat1"):
+        parse_bbox(text)
+
+
+def test_settings_are_json_or_text() -> None:
+    given_pairs = ["depth=1", "restart=true", "depth-weight=0.5", "name=x y"]
+    assert parse_settings(given_pairs) == {"depth": 1, "restart": True, "depth_weight": 0.5, "name": "x y"}
+
+
+def test_settings_that_make_no_sense_are_told_at_once() -> None:
+    with pytest.raises(SettingsError) as raised:
+        parse_settings(["depth", "=1", "restart=true", "restart=false"])
+    assert len(raised.value.faults) == 3
+
+
+@given(st.text(max_size=40))
+def test_whatever_is_typed_is_understood_or_refused(text: str) -> None:
+    for parse in (lambda: parse_start(text, HERE), lambda: parse_bbox(text), lambda: parse_settings([text])):
+        try:
+            parse()
+        except ReasonedExplorerError:
+            pass

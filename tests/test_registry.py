@@ -1,0 +1,31 @@
+import pytest
+
+from reasoned_explorer.model import InputError, UnknownNameError
+from reasoned_explorer.registry import Entry, Registry
+
+PARTS = Registry(
+    "part",
+    "parts-that-nobody-brings",
+    (
+        Entry("good", "builtins:list", "a list"),
+        Entry("gone", "reasoned_explorer.nowhere:make"),
+        Entry("empty", "math:no_such_thing"),
+        Entry("number", "math:pi"),
+    ),
+)
+
+
+def test_a_name_loads_what_it_stands_for() -> None:
+    assert PARTS.load("good") is list
+    assert PARTS.names() == ("empty", "gone", "good", "number")
+
+
+def test_an_unknown_name_lists_those_that_there_are() -> None:
+    with pytest.raises(UnknownNameError, match="did you mean good"):
+        PARTS.load("goood")
+
+
+@pytest.mark.parametrize("name", ["gone", "empty", "number"])
+def test_an_entry_that_cannot_be_used_says_what_is_wrong_with_it(name: str) -> None:
+    with pytest.raises(InputError):
+        PARTS.load(name)

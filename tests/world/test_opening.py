@@ -1,0 +1,57 @@
+from pathlib import Path
+
+import pytest
+
+from reasoned_explorer.model import SettingsError, UnknownNameError, WorldError
+from reasoned_explorer.world.digest import world_digest
+from reasoned_explorer.world.files import save_world
+from reasoned_explorer.world.opening import open_world
+from tests.world.worlds import courtyard
+
+
+@pytest.mark.parametrize(
+    ("spec", "name"), [("plaza@150", "plaza:0@150"), ("plaza:4@150", "plaza:4@150"), ("plaza:4@150.0", "plaza:4@150")]
+)
+def test_a_district_is_named_with_its_seed_and_its_size(spec: str, name: str) -> None:
+    assert open_world(spec).name == name
+
+
+def test_what_the_spec_says_wins_over_the_arguments() -> None:
+    assert open_world("plaza:4@150", seed=9, size_m=300.0).name == "plaza:4@150"
+    assert open_world("plaza", seed=9, size_m=150.0).name == "plaza:9@150"
+
+
+def test_a_kept_world_is_the_same_world(tmp_path: Path) -> None:
+    world = courtyard()
+    save_world(world, tmp_path / "court.rexworld")
+    assert world_digest(open_world(str(tmp_path / "court.rexworld"))) == world_digest(world)
+
+
+@pytest.mark.parametrize(
+    ("spec", "error"),
+    [
+        ("", WorldError),
+        ("park:seven", WorldError),
+        ("park@", WorldError),
+        ("../park", WorldError),
+        ("parc", UnknownNameError),
+        ("park@5000", SettingsError),
+        ("nowhere.osm", WorldError),
+        ("nowhere.rexworld", WorldError),
+    ],
+)
+def test_what_is_no_world_is_refused(spec: str, error: type[Exception]) -> None:
+    with pytest.raises(error):
+        open_world(spec)
+
+
+def test_only_maps_are_cropped(tmp_path: Path) -> None:
+    save_world(courtyard(), tmp_path / "court.rexworld")
+    for spec in ("park:7", str(tmp_path / "court.rexworld")):
+        with pytest.raises(WorldError, match="only for OpenStreetMap"):
+            open_world(spec, bbox=(1.0, 2.0, 3.0, 4.0))
+
+
+def test_the_fingerprint_tells_worlds_apart() -> None:
+    assert world_digest(open_world("plaza:4@150")) == world_digest(open_world("plaza:4@150"))
+    assert world_digest(open_world("plaza:4@150")) != world_digest(open_world("plaza:5@150"))
