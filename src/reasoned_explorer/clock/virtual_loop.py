@@ -21,6 +21,8 @@ class _NeverWaiting(selectors.BaseSelector):
         if timeout is None:
             # Nothing is scheduled: only a thread or a signal can bring something, and for that one has to wait.
             return self._real.select(None)
+        if timeout <= 0.0:
+            return []  # something is ready to run: the system need not be asked
         ready = self._real.select(0)
         if not ready:
             self.now_s += max(0.0, timeout)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -264,7 +265,7 @@ class Mission:
             ct_label=self._ct_label(),
             settings=asdict(self.settings),
             seed=self.settings.seed,
-            versions={name: version(name) for name in ("reasoned-explorer", "numpy", "numba", "shapely")},
+            versions=dict(_versions()),
             goal_objects=self._goal_objects(),
             reference_length_m=round(length_m, 3) if np.isfinite(length_m) else None,
             reference_way=tuple((round(float(x), 2), round(float(y), 2)) for x, y in way) if way is not None else (),
@@ -350,6 +351,11 @@ class Mission:
         if end.nearest_m <= self.settings.success_radius_m:
             return f"{end.nearest_m:.0f} m away, but not in sight"
         return f"the nearest is {end.nearest_m:.0f} m away" if np.isfinite(end.nearest_m) else "there is none"
+
+
+@cache
+def _versions() -> tuple[tuple[str, str], ...]:
+    return tuple((name, version(name)) for name in ("reasoned-explorer", "numpy", "numba", "shapely"))
 
 
 def _finite(value: float | None) -> float | None:

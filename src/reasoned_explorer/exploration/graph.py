@@ -28,6 +28,7 @@ class Frontier:
         pose: Where it is, facing away from its parent.
         q: Its score, or None where no answer could be had (such a frontier is gone to last).
         forbidden: Its ground is shunned by the goal; gone to only when nothing else is left.
+        known: The robot has passed close by, on another way than through its parent.
         state: What has become of it.
         reason: Why it was given up or is blocked.
     """
@@ -37,6 +38,7 @@ class Frontier:
     pose: Pose
     q: float | None
     forbidden: bool = False
+    known: bool = False
     state: FrontierState = FrontierState.OPEN
     reason: str = ""
 
@@ -48,7 +50,7 @@ class Choice:
     Attributes:
         frontier: The frontier.
         distance_m: d, along the way to it, metres.
-        penalty: σ(d).
+        penalty: σ(d); 1 where the robot has passed close by.
         value: Q − σ(d), rounded to 1e-4; None where Q is missing.
     """
 
@@ -66,11 +68,13 @@ class TopologicalGraph:
         merge_radius_m: A path point this near to an older one is that one.
         sharpness_per_m: k of σ(d).
         half_distance_m: d0 of σ(d).
+        known_radius_m: What lies this near to a path point or a leg has been passed close by; 0 for never.
     """
 
     merge_radius_m: float = 1.5
     sharpness_per_m: float = 0.5
     half_distance_m: float = 60.0
+    known_radius_m: float = 8.0
     points: list[Pose] = field(default_factory=list)
     edges: dict[int, dict[int, float]] = field(default_factory=dict)
     frontiers: list[Frontier] = field(default_factory=list)
@@ -85,6 +89,8 @@ class TopologicalGraph:
             self.edges[index] = {}
         if previous is not None and previous != index:
             length_m = self.points[previous].distance_to_m(self.points[index].x_m, self.points[index].y_m)
+            if index not in self.edges[previous]:
+                self._pass_by(previous, index)
             self.edges[previous][index] = self.edges[index][previous] = length_m
         return index
 
@@ -107,7 +113,25 @@ class TopologicalGraph:
             frontier.state, frontier.reason = FrontierState.BLOCKED, blocked_by
         else:
             self._open[frontier.id] = frontier
+            frontier.known = any(
+                self._lies_by(frontier, one, other)
+                for one, others in self.edges.items()
+                for other in others
+                if one < other
+            )
         return frontier
+
+    def _pass_by(self, one: int, other: int) -> None:
+        """Note which open frontiers a new leg passes."""
+        for frontier in self._open.values():
+            frontier.known = frontier.known or self._lies_by(frontier, one, other)
+
+    def _lies_by(self, frontier: Frontier, one: int, other: int) -> bool:
+        """Return whether a frontier lies by the leg between two path points; legs from its parent do not count."""
+        if frontier.parent in {one, other}:
+            return False
+        at, start, end = frontier.pose, self.points[one], self.points[other]
+        return _off_leg_m(at.x_m, at.y_m, start, end) < self.known_radius_m
 
     def open_frontiers(self) -> list[Frontier]:
         """Return what is in the buffer, oldest first."""
@@ -118,8 +142,10 @@ class TopologicalGraph:
 
         argmax of Q − σ(d) (paper, section IV-A), rounded to 1e-4; ties go to the nearer, then the older frontier. d is
         how far the robot has to travel: the authors fly straight, this agent goes along known edges, and a frontier
-        that is 10 m away behind a wall may be 200 m away on the way that it knows. Frontiers on shunned ground come
-        after all others, frontiers without a score after those with one.
+        that is 10 m away behind a wall may be 200 m away on the way that it knows. What the robot has passed close by
+        has been seen, and costs as much as the farthest frontier (O): small differences of Q would otherwise keep it
+        going to and fro in one place. Frontiers on shunned ground come after all others, frontiers without a score
+        after those with one.
 
         Args:
             start: The path point that the robot is at.
@@ -133,8 +159,12 @@ class TopologicalGraph:
             distance_m += parent.distance_to_m(frontier.pose.x_m, frontier.pose.y_m)
             if math.isinf(distance_m):  # joined by no edge: the route there is straight
                 distance_m = self.points[start].distance_to_m(frontier.pose.x_m, frontier.pose.y_m)
-            penalty = distance_penalty(
-                distance_m, sharpness_per_m=self.sharpness_per_m, half_distance_m=self.half_distance_m
+            penalty = (
+                1.0
+                if frontier.known
+                else distance_penalty(
+                    distance_m, sharpness_per_m=self.sharpness_per_m, half_distance_m=self.half_distance_m
+                )
             )
             value = None if frontier.q is None else round(frontier.q - penalty, 4)
             # Distances are compared to the millimetre: what lies equally far must not be told apart by rounding.
@@ -190,3 +220,12 @@ class TopologicalGraph:
                     length_m[other], came_from[other] = longer_m, point
                     heapq.heappush(queue, (longer_m, other))
         return came_from, length_m
+
+
+def _off_leg_m(x_m: float, y_m: float, start: Pose, end: Pose) -> float:
+    """Return the distance of a place from the straight leg between two poses, metres."""
+    east_m, north_m = end.x_m - start.x_m, end.y_m - start.y_m
+    squared = east_m * east_m + north_m * north_m
+    share = ((x_m - start.x_m) * east_m + (y_m - start.y_m) * north_m) / squared if squared > 0.0 else 0.0
+    share = min(1.0, max(0.0, share))
+    return math.hypot(x_m - start.x_m - share * east_m, y_m - start.y_m - share * north_m)

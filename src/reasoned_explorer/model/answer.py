@@ -26,7 +26,9 @@ class Assessment:
         """The expected level, in [1, 5], or None where the answer is missing."""
         if self.level_probabilities is None:
             return None
-        return sum(level * p for level, p in zip(LIKERT_LEVELS, self.level_probabilities, strict=True))
+        one, two, three, four, five = self.level_probabilities
+        # Written out: sum() adds floats in another way from Python 3.12 on, and scores are asked for in the inner loop.
+        return one + 2 * two + 3 * three + 4 * four + 5 * five
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,9 @@
 """What a camera sees of a world: which objects, how large in the picture, how far hidden, and what the ground is."""
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -52,10 +54,9 @@ class Eyes:
         self._sight = atlas.sight
         self._raster = atlas.ground
         self._frame = np.array([self._raster.min_x_m, self._raster.min_y_m, self._raster.cell_m])
-        self._seats = _seats(atlas.world)
-        self._classes = [item.class_name for item in atlas.world.objects]
-        self._names = [str(item.attributes.get("name", "")) for item in atlas.world.objects]
-        self._under = _cover_classes(atlas.world)
+        if atlas not in _THINGS:
+            _THINGS[atlas] = _things_of(atlas.world)
+        self._things = _THINGS[atlas]
 
     def look(self, pose: Pose, camera: Camera) -> ViewContent:
         """Return what a camera sees.
@@ -71,13 +72,13 @@ class Eyes:
         size = (float(camera.width_px), float(camera.height_px))
         hiding, solid = self._sight.hiding, self._sight.solid
         seen = kernels.see_objects(
-            hiding, self._seats, self._sight.targets, *at, half_fov, *size, self.max_range_m, self.min_px
+            hiding, self._things.seats, self._sight.targets, *at, half_fov, *size, self.max_range_m, self.min_px
         )
         walls = kernels.see_walls(hiding, *at, half_fov, self.max_range_m)
         told = kernels.see_ground(
             solid, self._raster.codes, self._frame, *at, self.max_range_m, int(Ground.UNKNOWN), int(Ground.BUILDING)
         )
-        classes, under, names = self._classes, self._under, self._names
+        classes, under, names = self._things.classes, self._things.under, self._things.names
         sightings = tuple(
             [
                 Sighting(place := int(k), classes[place], bearing, near, wide, tall, share, under[place], names[place])
@@ -101,9 +102,36 @@ class Eyes:
         from reasoned_explorer.simulation.eyes_kernels import GROUND_BEARINGS
 
         near, middle, far, free_m, kind, owner = row
-        ends_at = "" if kind == 0 else ("building" if kind == 1 else self._classes[int(owner)])
+        ends_at = "" if kind == 0 else ("building" if kind == 1 else self._things.classes[int(owner)])
         grounds = (_GROUNDS[int(near)], _GROUNDS[int(middle)], _GROUNDS[int(far)])
         return GroundStretch(GROUND_BEARINGS[place], *grounds, free_m, ends_at)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Things:
+    """What eyes need to know of a world's objects, in their order.
+
+    Attributes:
+        seats: A grid over the squares that enclose their footprints.
+        classes: Their classes.
+        names: Their names; empty where they have none.
+        under: The class of what stands over each, or None.
+    """
+
+    seats: "Grid"
+    classes: tuple[str, ...]
+    names: tuple[str, ...]
+    under: tuple[str | None, ...]
+
+
+#: Worked out once for each atlas, since many missions share one.
+_THINGS: "WeakKeyDictionary[Atlas, _Things]" = WeakKeyDictionary()
+
+
+def _things_of(world: "World") -> _Things:
+    classes = tuple(item.class_name for item in world.objects)
+    names = tuple(str(item.attributes.get("name", "")) for item in world.objects)
+    return _Things(_seats(world), classes, names, tuple(_cover_classes(world)))
 
 
 def _seats(world: "World") -> "Grid":

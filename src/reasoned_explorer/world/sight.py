@@ -187,21 +187,12 @@ class SightLines:
 
         Places and areas are never solid; a tree is its trunk.
         """
-        from reasoned_explorer.world.sight_kernels import gather
+        from reasoned_explorer.world.sight_kernels import gather, split
 
         west, east = sorted(_floats(x0_m, x1_m))
         south, north = sorted(_floats(y0_m, y1_m))
         found = gather(self.solid, west - margin_m, south - margin_m, east + margin_m, north + margin_m, float(z_m))
-        items, owners = self.solid.items[found], self.solid.owners[found]
-        is_disc = items[:, 0] == 1.0
-        walls, wall_owners = items[~is_disc], owners[~is_disc]
-        return Obstacles(
-            walls=np.ascontiguousarray(walls[:, 1:5]),
-            wall_building=np.where(wall_owners[:, 0] == HitKind.BUILDING, wall_owners[:, 1], -1),
-            wall_object=np.where(wall_owners[:, 0] == HitKind.OBJECT, wall_owners[:, 1], -1),
-            discs=np.ascontiguousarray(items[is_disc, 1:4]),
-            disc_object=np.ascontiguousarray(owners[is_disc, 1]),
-        )
+        return Obstacles(*split(self.solid, found))
 
 
 def _floats(*values: float) -> tuple[float, ...]:

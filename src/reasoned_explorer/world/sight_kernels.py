@@ -318,6 +318,31 @@ def gather(grid: Grid, x0: float, y0: float, x1: float, y1: float, z: float) -> 
 
 
 @njit(cache=True)
+def split(grid: Grid, places: IntArray) -> tuple[FloatArray, IntArray, IntArray, FloatArray, IntArray]:
+    """Return the items at some places as walls with their buildings and objects, and discs with their objects."""
+    items, owners = grid.items, grid.owners
+    discs_kept = 0
+    for k in places:
+        if items[k, 0] == 1.0:
+            discs_kept += 1
+    walls_kept = len(places) - discs_kept
+    walls, wall_building, wall_object = np.empty((walls_kept, 4)), np.empty(walls_kept, np.int64), np.empty(walls_kept, np.int64)
+    discs, disc_object = np.empty((discs_kept, 3)), np.empty(discs_kept, np.int64)
+    walls_kept = discs_kept = 0
+    for k in places:
+        if items[k, 0] == 1.0:
+            discs[discs_kept] = items[k, 1:4]
+            disc_object[discs_kept] = owners[k, 1]
+            discs_kept += 1
+        else:
+            walls[walls_kept] = items[k, 1:5]
+            wall_building[walls_kept] = owners[k, 1] if owners[k, 0] == BUILDING else -1
+            wall_object[walls_kept] = owners[k, 1] if owners[k, 0] == OBJECT else -1
+            walls_kept += 1
+    return walls, wall_building, wall_object, discs, disc_object
+
+
+@njit(cache=True)
 def bearing(dx: float, dy: float, sin_h: float, cos_h: float) -> float:
     """Return the bearing of an offset from an axis (its sine and cosine are given), positive to the right."""
     return math.atan2(dx * cos_h - dy * sin_h, dx * sin_h + dy * cos_h)

@@ -5,6 +5,7 @@ and something new comes into view, drawn from what stands near such things in re
 blind to the goal, as the paper's visionary is.
 """
 
+from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cache, lru_cache
 
@@ -85,7 +86,7 @@ class _Outlook:
     things: tuple[_Thing, ...]
     grounds: tuple[str | None, str | None, str | None]
     background: tuple[_Thing, ...]
-    chances: NDArray[np.float64]
+    chances: tuple[float, ...]
     names: tuple[str, ...]
     blocked: bool
 
@@ -148,7 +149,8 @@ def _news(senses: Senses) -> _News:
     return _News(names, base, rows)
 
 
-def _chances(reading: SceneReading, news: _News) -> NDArray[np.float64]:
+def _chances(reading: SceneReading, news: _News) -> tuple[float, ...]:
+    """Return the running sum of how likely each new thing is."""
     chances = news.base
     witnesses = 0
     for concept in dict.fromkeys(m.concept for m in reading.mentions if not m.negated and m.distance != BACKGROUND):
@@ -158,8 +160,7 @@ def _chances(reading: SceneReading, news: _News) -> NDArray[np.float64]:
             witnesses += 1
             if witnesses == _WITNESSES:
                 break
-    total: NDArray[np.float64] = np.cumsum(chances)
-    return total
+    return tuple(np.cumsum(chances).tolist())
 
 
 @lru_cache(maxsize=16384)
@@ -302,10 +303,10 @@ def _child(outlook: _Outlook, draws: _Draws, offset: float) -> str:
 
 def _news_of(outlook: _Outlook, draws: _Draws, offset: float) -> tuple[_Thing, _Thing]:
     """Draw two new things; children are spread over what is likely (stratified), so that they differ."""
-    total = float(outlook.chances[-1])
+    total = outlook.chances[-1]
     drawn = []
     for share in (((draws.next() + offset) % 1.0), draws.next()):
-        place = int(np.searchsorted(outlook.chances, share * total, side="right"))
+        place = bisect_right(outlook.chances, share * total)
         name = outlook.names[min(place, len(outlook.names) - 1)]
         drawn.append(_new_thing(name, _SIDES[int(draws.next() * 3.0)]))
     return drawn[0], drawn[1]

@@ -41,6 +41,7 @@ def build_world(district: str, *, seed: int, size_m: float, statistics: Statisti
         fill_town(sketch)
     else:
         fill_district(sketch, _zone(district))
+    _hang_doors(sketch)
     crossings = add_crossings(sketch)
     ground, ways = ground_of(sketch), ways_of(sketch)
     plan = GroundPlan(
@@ -94,6 +95,18 @@ def build_world(district: str, *, seed: int, size_m: float, statistics: Statisti
 
 def _zone(district: str) -> Zone:
     return next(zone for zone in get_args(Zone) if zone == district)
+
+
+def _hang_doors(sketch: Sketch) -> None:
+    """Move main entrances onto the outlines of their buildings (of a winged building, the front may lie back)."""
+    chosen = [item for item in sketch.footprints if item.entrance is not None]
+    if not chosen:
+        return
+    walls = np.array([item.area.exterior for item in chosen])
+    doors = shapely.points(np.array([item.entrance for item in chosen], float))
+    at = shapely.line_interpolate_point(walls, shapely.line_locate_point(walls, doors))
+    for item, (x, y) in zip(chosen, shapely.get_coordinates(at).tolist(), strict=True):
+        item.entrance = (x, y)
 
 
 def _stand_areas(sketch: Sketch, furnisher: Furnisher) -> None:
