@@ -4,6 +4,7 @@ import math
 import textwrap
 from collections.abc import Iterator
 
+from reasoned_explorer.geometry import GeoOrigin
 from reasoned_explorer.model import LegOutcome
 from reasoned_explorer.model.record import EpisodeRecord, MissionHeader, MissionSummary, StepRecord, ViewRecord
 
@@ -16,7 +17,11 @@ def header_lines(header: MissionHeader) -> Iterator[str]:
     level = f" (level {header.level})" if header.level else ""
     yield f"“{header.goal}”{level}"
     heading_deg = math.degrees(heading_rad)
-    yield f"  world    {header.world}, start {x_m:.0f} m east, {y_m:.0f} m north, heading {heading_deg:.0f}°"
+    start = f"{x_m:.0f} m east, {y_m:.0f} m north"
+    if header.origin_deg is not None:
+        lat_deg, lon_deg = GeoOrigin(*header.origin_deg).geodetic_from_enu_deg(x_m, y_m)
+        start = f"{lat_deg:.5f}, {lon_deg:.5f}"
+    yield f"  world    {header.world}, start {start}, heading {heading_deg:.0f}°"
     yield f"  agent    {header.planner}"
     yield f"  eyes     {header.captioner}; vehicle {header.vehicle}"
     yield f"  clock    {header.clock}, CT {header.ct_label}; seed {header.seed}"
@@ -30,8 +35,25 @@ def header_lines(header: MissionHeader) -> Iterator[str]:
         yield f"  map      {header.attribution}"
 
 
-def step_lines(step: StepRecord) -> Iterator[str]:
-    """Yield a step: what is seen ahead, what was chosen and why, what it took."""
+class Progress:
+    """The steps of one mission in lines, with the distance travelled so far."""
+
+    def __init__(self) -> None:
+        self._path_m = 0.0
+
+    def lines(self, step: StepRecord) -> Iterator[str]:
+        """Yield a step."""
+        self._path_m += sum(leg.length_m for leg in step.legs)
+        yield from step_lines(step, path_m=self._path_m)
+
+
+def step_lines(step: StepRecord, *, path_m: float | None = None) -> Iterator[str]:
+    """Yield a step: what is seen ahead, what was chosen and why, what it took.
+
+    Args:
+        step: The step.
+        path_m: Metres travelled since the mission's start, or None to leave them out.
+    """
     ahead = _ahead(step)
     gone_m = sum(leg.length_m for leg in step.legs)
     yield f"step {step.step:3d}  {_clock(step.started_s)}  {_clipped(ahead) if ahead else '(no look)'}"
@@ -44,7 +66,8 @@ def step_lines(step: StepRecord) -> Iterator[str]:
         went = (
             f"{gone_m:.0f} m" if trouble is None else f"{gone_m:.0f} m, then {trouble.outcome.value} {trouble.detail}"
         )
-        yield f"          → {chosen}; went {went.rstrip()}; CT {step.ct_s:.0f} s, TT {step.tt_s:.0f} s"
+        so_far = "" if path_m is None else f", {path_m:.0f} m so far"
+        yield f"          → {chosen}; went {went.rstrip()}; CT {step.ct_s:.0f} s, TT {step.tt_s:.0f} s{so_far}"
     for view in step.views:
         if view.found:
             yield f"          ! goal seen ({view.confidence:.2f}): {_clipped(view.evidence)}"

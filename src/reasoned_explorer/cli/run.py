@@ -10,7 +10,7 @@ from rich.console import Console
 
 from reasoned_explorer.cli.answers import ExitCode
 from reasoned_explorer.cli.parsing import parse_bbox, parse_settings, parse_start
-from reasoned_explorer.cli.progress import header_lines, step_lines, summary_lines
+from reasoned_explorer.cli.progress import Progress, header_lines, summary_lines
 from reasoned_explorer.evaluation.mission import Mission, MissionResult, MissionSettings
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.model import Fault, RecordError
@@ -91,9 +91,11 @@ def run_from_options(options: RunOptions) -> None:
         for line in header_lines(mission.header):
             console.print(line, markup=False, soft_wrap=True)
 
+    progress = Progress()
+
     def on_step(step: StepRecord) -> None:
         if not options.quiet:
-            for line in step_lines(step):
+            for line in progress.lines(step):
                 console.print(line, markup=False, soft_wrap=True)
 
     result = mission.run(folder=folder, on_step=on_step)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from reasoned_explorer.cli.progress import header_lines, step_details, step_lines, summary_lines
+from reasoned_explorer.cli.progress import Progress, header_lines, step_details, summary_lines
 from reasoned_explorer.evaluation.record_file import read_record
 from reasoned_explorer.model import Fault, RecordError
 
@@ -29,8 +29,9 @@ def show_run(folder: Path, *, step: int | None = None) -> None:
         return
     for line in header_lines(record.header):
         say(line)
+    progress = Progress()
     for kept in record.steps:
-        for line in step_lines(kept):
+        for line in progress.lines(kept):
             say(line)
     for line in summary_lines(record):
         say(line)

@@ -271,6 +271,7 @@ class Mission:
             reference_way=tuple((round(float(x), 2), round(float(y), 2)) for x, y in way) if way is not None else (),
             success_radius_m=self.settings.success_radius_m,
             understood=tuple(self.spec.describe()),
+            origin_deg=None if world.origin is None else (world.origin.lat_deg, world.origin.lon_deg),
         )
 
     def _ct_label(self) -> str:

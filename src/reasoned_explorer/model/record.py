@@ -46,6 +46,7 @@ class MissionHeader:
         reference_way: Its points.
         success_radius_m: R.
         understood: What the judge reads in the goal, in words.
+        origin_deg: Latitude and longitude of the world's ENU origin, degrees; None for a world that is not on earth.
         schema: Version of this format.
     """
 
@@ -69,6 +70,7 @@ class MissionHeader:
     reference_way: tuple[tuple[float, float], ...] = ()
     success_radius_m: float = 15.0
     understood: tuple[str, ...] = ()
+    origin_deg: tuple[float, float] | None = None
     schema: int = RECORD_SCHEMA
 
 
