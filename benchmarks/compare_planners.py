@@ -24,7 +24,7 @@ import argparse
 import json
 import math
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass, replace
 from functools import partial
@@ -169,15 +169,27 @@ def run_place(place: str, options: argparse.Namespace) -> list[Row]:
     return [run_episode(atlas, place, episode, method, options) for method in options.planners for episode in episodes]
 
 
-def run_all(options: argparse.Namespace) -> list[Row]:
-    """Run everything; places in the order given, whatever the number of processes."""
+def run_all(options: argparse.Namespace) -> Iterator[list[Row]]:
+    """Run everything, place by place in the order given, whatever the number of processes."""
     work = partial(run_place, options=options)
     if options.jobs == 1 or len(options.worlds) == 1:
-        listed = [work(place) for place in options.worlds]
-    else:
-        with ProcessPoolExecutor(options.jobs, mp_context=get_context("spawn")) as pool:
-            listed = list(pool.map(work, options.worlds))
-    return [row for rows in listed for row in rows]
+        yield from map(work, options.worlds)
+        return
+    with ProcessPoolExecutor(options.jobs, mp_context=get_context("spawn")) as pool:
+        yield from pool.map(work, options.worlds)
+
+
+def run_and_keep(options: argparse.Namespace) -> list[Row]:
+    """Run everything; what is finished is in the file of rows at once."""
+    rows: list[Row] = []
+    if options.rows:
+        options.rows.write_text("", encoding="utf-8")
+    for made in run_all(options):
+        rows += made
+        if options.rows:
+            with options.rows.open("a", encoding="utf-8") as file:
+                file.writelines(row.as_json() + "\n" for row in made)
+    return rows
 
 
 def read_rows(path: Path) -> list[Row]:
@@ -242,10 +254,10 @@ def report(rows: Sequence[Row]) -> str:
 def _about(rows: Sequence[Row], methods: Sequence[str]) -> str:
     first = rows[0]
     label = {method: next(row.minds for row in rows if row.method == method) for method in methods}
-    places = dict.fromkeys(row.place for row in rows)
+    named = ", ".join(dict.fromkeys(row.place for row in rows))
+    made = f"{first.captioner}; CT {first.ct_label}; reasoned-explorer {version('reasoned-explorer')}"
     lines = [
-        f"{len(rows) // len(methods)} missions a method in {', '.join(places)}; vehicle {first.score['vehicle']}; "
-        f"{first.captioner}; CT {first.ct_label}; reasoned-explorer {version('reasoned-explorer')}.",
+        f"{len(rows) // len(methods)} missions a method in {named}; vehicle {first.score['vehicle']}; {made}.",
         *(f"- {method}: minds {label[method]}" for method in methods),
     ]
     thanks = sorted({row.attribution for row in rows} - {""})
@@ -306,11 +318,9 @@ def main() -> None:
     """Run and print."""
     options = arguments()
     try:
-        rows = read_rows(options.source) if options.source else run_all(options)
+        rows = read_rows(options.source) if options.source else run_and_keep(options)
     except ReasonedExplorerError as error:
         raise SystemExit(f"{error}") from error
-    if options.rows:
-        options.rows.write_text("".join(row.as_json() + "\n" for row in rows), encoding="utf-8")
     print(report(rows))
 
 

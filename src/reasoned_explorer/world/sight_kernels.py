@@ -326,7 +326,8 @@ def split(grid: Grid, places: IntArray) -> tuple[FloatArray, IntArray, IntArray,
         if items[k, 0] == 1.0:
             discs_kept += 1
     walls_kept = len(places) - discs_kept
-    walls, wall_building, wall_object = np.empty((walls_kept, 4)), np.empty(walls_kept, np.int64), np.empty(walls_kept, np.int64)
+    walls, wall_building = np.empty((walls_kept, 4)), np.empty(walls_kept, np.int64)
+    wall_object = np.empty(walls_kept, np.int64)
     discs, disc_object = np.empty((discs_kept, 3)), np.empty(discs_kept, np.int64)
     walls_kept = discs_kept = 0
     for k in places:

@@ -9,7 +9,9 @@ import pytest
 import shapely
 
 from reasoned_explorer.world.generator import DISTRICTS, generate_world
+from reasoned_explorer.world.generator.shapes import along, left_of
 from reasoned_explorer.world.taxonomy import IMPASSABLE_ON_FOOT, OBJECT_CLASSES, Ground
+from reasoned_explorer.world.validation import check_world
 from reasoned_explorer.world.world import World, WorldObject
 
 SIZE_M = 300.0
@@ -136,6 +138,54 @@ def test_only_cars_and_bicycles_are_on_the_carriageway_and_leave_it_passable(dis
     stands = [stand_of(item) for item in standing(world)]
     blocked, _ = shapely.STRtree(stands).query(np.array(lanes), predicate="intersects")
     assert not len(blocked)
+
+
+@every_district
+def test_a_world_is_sound(district: str) -> None:
+    check_world(world_of(district))
+
+
+@every_district
+def test_one_can_walk_on_along_the_pavements(district: str) -> None:
+    """Across nearly every pavement, away from its ends, there are 1.45 m between what stands on it and the walls."""
+    world = world_of(district)
+    solid = [stand_of(item) for item in standing(world)]
+    solid += [shapely.Polygon(item.outer, item.holes) for item in world.buildings if item.min_height_m == 0]
+    tree, free = shapely.STRtree(solid), []
+    roads = [way for way in world.ways if way.ground == Ground.ROAD]
+    beds = shapely.union_all([shapely.LineString(way.line).buffer(way.width_m / 2, cap_style="flat") for way in roads])
+    pavements = {way.line.tobytes(): way.width_m for way in world.ways if way.ground == Ground.PAVEMENT}
+    for way in roads:
+        half_m = pavements[way.line.tobytes()] / 2
+        assert half_m - way.width_m / 2 >= 2.5
+        at, tangents = along(way.line, 4.0, start_m=14.0, end_m=14.0)
+        for foot, normal in zip(at, left_of(tangents), strict=True):
+            for side in (1.0, -1.0):
+                across = shapely.LineString(
+                    [foot + side * normal * reach for reach in (way.width_m / 2 + 0.01, half_m)]
+                )
+                if np.abs(shapely.get_coordinates(across)).max() < SIZE_M / 2 and not beds.intersects(across):
+                    near = [solid[index] for index in tree.query(across, predicate="intersects")]
+                    rest = shapely.get_parts(across.difference(shapely.union_all(near)))
+                    free.append(max(shapely.length(rest), default=0.0))
+    assert len(free) > 50
+    assert np.mean(np.array(free) >= 1.45) >= 0.97
+
+
+@every_district
+def test_no_courtyard_is_closed(district: str) -> None:
+    """What walls leave open hangs together even for a body that needs 3 m, but for small corners.
+
+    A street that cuts a corner of the world may be cut off by its border.
+    """
+    world = world_of(district)
+    walls = [shapely.Polygon(item.outer, item.holes) for item in world.buildings if item.min_height_m == 0]
+    half = SIZE_M / 2
+    box = shapely.box(-half, -half, half, half)
+    rooms = shapely.get_parts(shapely.buffer(shapely.difference(box, shapely.union_all(walls)), -1.5, quad_segs=3))
+    closed = rooms[shapely.distance(rooms, box.exterior) > 2.0]
+    assert (shapely.area(closed) < 150.0).all()
+    assert shapely.area(rooms).max() > 0.97 * shapely.area(rooms).sum()
 
 
 @every_district

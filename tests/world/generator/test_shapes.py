@@ -10,7 +10,18 @@ from hypothesis import strategies as st
 
 from reasoned_explorer.world.generator.occupancy import Occupancy
 from reasoned_explorer.world.generator.park import neighbours
-from reasoned_explorer.world.generator.shapes import along, blob, footprint, placed, smooth, spread, thin
+from reasoned_explorer.world.generator.shapes import (
+    along,
+    along_many,
+    blob,
+    bow,
+    bows,
+    footprint,
+    placed,
+    smooth,
+    spread,
+    thin,
+)
 
 coordinate = st.floats(-50, 50)
 heading = st.floats(0, 2 * math.pi)
@@ -72,6 +83,43 @@ def test_points_along_a_bent_line_are_evenly_spaced() -> None:
     at, tangents = along(line, 4.0)
     assert at.tolist() == [[2, 0], [6, 0], [10, 0], [10, 4], [10, 8]]
     assert tangents[-1].tolist() == [0, 1]
+
+
+@settings(deadline=None, max_examples=50)
+@given(
+    st.lists(st.lists(st.tuples(coordinate, coordinate), min_size=2, max_size=5), min_size=1, max_size=4),
+    st.floats(1.0, 9.0),
+    st.floats(0.0, 5.0),
+)
+def test_many_lines_at_once_are_as_one_after_the_other(
+    lines: list[list[tuple[float, float]]], spacing: float, start: float
+) -> None:
+    arrays = [np.array(line) for line in lines]
+    at, tangents, owner = along_many(arrays, spacing, start_m=start, end_m=1.0)
+    for index, line in enumerate(arrays):
+        own, directions = along(line, spacing, start_m=start, end_m=1.0)
+        # Where a point would lie on the very end, rounding decides whether it does.
+        assert abs(len(own) - (owner == index).sum()) <= 1
+        number = min(len(own), int((owner == index).sum()))
+        np.testing.assert_allclose(at[owner == index][:number], own[:number], atol=1e-6)
+        assert (np.abs(np.hypot(*tangents[owner == index].T) - 1) < 1e-9).all()
+        assert directions.shape == own.shape
+
+
+def test_many_curves_are_as_one_after_the_other() -> None:
+    starts, ends, sags = np.array([(0, 0), (1, 2)]), np.array([(9, 3), (-4, 8)]), np.array([0.1, -0.2])
+    for curve, start, end, sag in zip(bows(starts, ends, sags), starts, ends, sags, strict=True):
+        np.testing.assert_allclose(curve, bow(start, end, sag))
+
+
+def test_nothing_may_stand_on_a_strip_that_is_kept_open_but_strips_may_overlap() -> None:
+    taken = Occupancy()
+    taken.keep_open(0.0, 0.0, 0.0, 2.0, 1.5)
+    assert not taken.free(0.5, 0.0, 0.0, 0.5, 0.5)
+    assert taken.free(0.0, 2.0, 0.0, 0.5, 0.5)
+    assert taken.passable(0.5, 0.0, 0.0, 2.0, 1.5)
+    taken.take(0.0, 2.0, 0.0, 0.5, 0.5)
+    assert not taken.passable(0.0, 1.5, 0.0, 2.0, 1.5)
 
 
 def test_a_line_too_short_has_no_points() -> None:

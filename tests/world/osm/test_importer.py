@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from reasoned_explorer.model import WorldError
+from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.osm.importer import ATTRIBUTION, import_osm, import_osm_with_report
 from reasoned_explorer.world.taxonomy import Ground
 from reasoned_explorer.world.world import World
@@ -95,6 +96,45 @@ def test_furniture_in_a_house_is_dropped_and_under_a_roof_is_not(tmp_path: Path)
     assert _one(world, "post_box").x_m == pytest.approx(-0.3, abs=0.1)
     assert _one(world, "shelter").building >= 0
     assert [one.min_height_m > 2.0 for one in world.buildings] == [False, True, False]
+
+
+def test_a_passage_leads_through_a_house_into_its_courtyard(tmp_path: Path) -> None:
+    town = Map()
+    outer, inner = town.box(0, 0, 40, 40), town.box(10, 10, 30, 30)
+    town.relation([(outer, "outer"), (inner, "inner")], {"building": "apartments", "building:levels": "5"})
+    town.way([(20, 0), (20, 10)], {"highway": "service", "tunnel": "building_passage", "layer": "-1"})
+    town.way([(20, -30), (20, 0)], {"highway": "service"})
+    world = import_osm(town.write(tmp_path), bbox=BBOX)
+    ground = Atlas(world).ground
+    assert [ground.at(20.0, y_m) for y_m in (-5.0, 5.0, 20.0)] == [Ground.ROAD, Ground.ROAD, Ground.YARD]
+    assert ground.at(5.0, 5.0) == Ground.BUILDING
+    arch = [one for one in world.buildings if one.min_height_m > 2.0]
+    assert [(one.min_height_m, one.height_m) for one in arch] == [(3.5, 15.0)]
+    assert {one.height_m for one in world.buildings} == {15.0}
+
+
+@pytest.mark.parametrize("drawn", ["as a way", "as a point", "as both"])
+def test_crossings_are_pavement_over_the_road(tmp_path: Path, drawn: str) -> None:
+    town = Map()
+    middle = town.node(0, 0, {} if drawn == "as a way" else {"highway": "crossing", "crossing": "zebra"})
+    town.way_of([town.node(-60, 0), middle, town.node(60, 0)], {"highway": "secondary", "width": "10"})
+    if drawn != "as a point":
+        town.way_of([town.node(0, -6), middle, town.node(0, 6)], {"highway": "footway", "footway": "crossing"})
+    world = import_osm(town.write(tmp_path), bbox=BBOX)
+    ground = Atlas(world).ground
+    assert {ground.at(0.0, y_m) for y_m in (-4.0, -2.0, 0.0, 2.0, 4.0)} == {Ground.PAVEMENT}
+    assert ground.at(8.0, 0.0) == Ground.ROAD
+    assert sum(way.ground == Ground.PAVEMENT for way in world.ways) == 1
+
+
+def test_a_shop_deep_in_a_house_whose_ways_are_indoors_comes_out_into_the_open(tmp_path: Path) -> None:
+    town = Map()
+    town.box(-40, -40, 40, 40, {"building": "retail"})
+    town.way([(-10, 0), (10, 0)], {"highway": "footway"})
+    town.node(2, 3, {"shop": "shoes"})
+    world = import_osm(town.write(tmp_path), bbox=BBOX)
+    shop = _one(world, "shop")
+    assert Atlas(world).ground.at(shop.x_m, shop.y_m) != Ground.BUILDING
 
 
 def test_courtyards_are_holes_with_yard_ground(tmp_path: Path) -> None:

@@ -96,7 +96,8 @@ class Affinity:
         place = np.floor((points - self._origin) / COARSE_M).astype(np.intp) + _REACH
         rows = np.clip(place[:, 1], _REACH, self._rows - 1 - _REACH)
         columns = np.clip(place[:, 0], _REACH, self._columns - 1 - _REACH)
-        return rows * self._columns + columns
+        cells: NDArray[np.intp] = rows * self._columns + columns
+        return cells
 
     def feel(self, code: int, points: Points) -> None:
         """Take note that things of a class stand at points, shape (n, 2)."""

@@ -38,9 +38,12 @@ def ground_of(sketch: Sketch) -> list[Patch]:
         cut = areas.copy()
         cut[~inside] = shapely.intersection(areas[~inside], sketch.box)
         for patch, area, whole in zip(sketch.patches, cut, inside.tolist(), strict=True):
-            for part in (area,) if whole else shapely.get_parts(area):
-                if isinstance(part, Polygon) and part.area > 0.5:
-                    made.append(Patch(patch.ground, part, name=patch.name))
+            parts = (area,) if whole else shapely.get_parts(area)
+            made.extend(
+                Patch(patch.ground, part, name=patch.name)
+                for part in parts
+                if isinstance(part, Polygon) and part.area > 0.5
+            )
     return made
 
 

@@ -61,9 +61,7 @@ def blocks_between(area: Polygon, beds: shapely.Geometry) -> list[Polygon]:
     return found
 
 
-def _corner_free(
-    ring: Points, clear_m: float, rng: Generator, frontage_m: tuple[float, float]
-) -> NDArray[np.object_]:
+def _corner_free(ring: Points, clear_m: float, rng: Generator, frontage_m: tuple[float, float]) -> NDArray[np.object_]:
     """Return cuts across a block's rim, none of them near a sharp corner."""
     steps = np.diff(ring, axis=0)
     lengths = np.hypot(steps[:, 0], steps[:, 1])

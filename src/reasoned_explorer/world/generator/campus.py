@@ -5,7 +5,7 @@ import math
 import numpy as np
 import shapely
 from numpy.random import Generator
-from shapely import LineString, Polygon
+from shapely import Polygon
 
 from reasoned_explorer.world.generator.blocks import carpark_block, height_of
 from reasoned_explorer.world.generator.park import lay_mesh, neighbours
@@ -194,19 +194,24 @@ def _free_buildings(
     widths, depths = rng.uniform(22, 44, number).tolist(), rng.uniform(14, 28, number).tolist()
     turns = (grain + math.pi / 2 * rng.integers(4, size=number) + rng.normal(0, 0.05, number)).tolist()
     open_spots = shapely.contains_xy(room, spots).tolist() if number else []
-    built: list[tuple[float, float, Polygon]] = []
+    built: list[Polygon] = []
+    middles = np.full((number, 2), np.inf)
     for index, (x, y) in enumerate(spots.tolist()):
         if len(built) > ground.area / 6000.0:
             break
+        if not open_spots[index]:
+            continue
+        gaps = np.hypot(*(middles[: len(built)] - (x, y)).T)
         # In the least of buildings the middle is 7 m from any wall; 13 m lie between two.
-        near = [(math.hypot(x - at_x, y - at_y), area) for at_x, at_y, area in built]
-        if not open_spots[index] or any(gap < 20.0 for gap, _ in near):
+        if gaps.min(initial=math.inf) < 20.0:
             continue
         width, depth, heading = widths[index], depths[index], turns[index]
         area = placed(footprint(kinds[index], width, depth, 11.0), x, y, heading)
-        if not shapely.contains(room, area) or any(gap < 70.0 and area.intersects(other) for gap, other in near):
+        near = [built[place] for place in np.flatnonzero(gaps < 70.0).tolist()]
+        if not shapely.contains(room, area) or any(area.intersects(other) for other in near):
             continue
-        built.append((x, y, area.buffer(13.0, quad_segs=2)))
+        middles[len(built)] = x, y
+        built.append(area.buffer(13.0, quad_segs=2))
         door = (x + math.sin(heading) * depth / 2, y + math.cos(heading) * depth / 2)
         kind_name, name = ("dormitory", "") if rng.random() < 0.3 else ("university", _NAMES[int(rng.integers(12))])
         sketch.build(Footprint(area, height_of(rng, (2, 6)), "campus", kind_name, door, name=name))

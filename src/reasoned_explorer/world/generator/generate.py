@@ -7,8 +7,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from reasoned_explorer.world.generator.assemble import buildings_of, ground_of, regions_of, rings_of, ways_of
 from reasoned_explorer.world.generator.affinity import Pull, Statistics
+from reasoned_explorer.world.generator.assemble import buildings_of, ground_of, regions_of, rings_of, ways_of
 from reasoned_explorer.world.generator.furniture import Furnisher, Thing, standing_size
 from reasoned_explorer.world.generator.greenery import plant_bushes, plant_trees
 from reasoned_explorer.world.generator.ground import GroundPlan

@@ -55,11 +55,11 @@ _SOFT = (Ground.GRASS, Ground.WOOD, Ground.GARDEN, Ground.YARD, Ground.SAND)
 _ALLOWED: dict[Role, tuple[Ground, ...]] = {
     Role.KERB: (*_HARD, Ground.GRASS),
     Role.FRONT: _HARD,
-    Role.VERGE: (*_HARD, *_SOFT, Ground.PLAYGROUND),
+    Role.VERGE: (Ground.PLAZA, *_SOFT, Ground.PLAYGROUND),
     Role.OPEN: (Ground.PLAZA,),
     Role.GREEN: _SOFT,
     Role.PLAY: (Ground.PLAYGROUND,),
-    Role.LOT: (*_HARD, *_SOFT),
+    Role.LOT: (Ground.PLAZA, *_SOFT),
     Role.CORNER: _HARD,
     Role.DOOR: (Ground.BUILDING,),
 }

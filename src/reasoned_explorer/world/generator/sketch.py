@@ -143,6 +143,12 @@ class Sketch:
 
     def pave(self, line: Points, width_m: float, ground: Ground = Ground.PATH, kind: str = "footway") -> None:
         """Draw a trail, cut at the border of the world."""
+        low_x, low_y, high_x, high_y = self.box.bounds
+        (min_x, min_y), (max_x, max_y) = line.min(axis=0).tolist(), line.max(axis=0).tolist()
+        if min_x > low_x and min_y > low_y and max_x < high_x and max_y < high_y:
+            if float(np.hypot(*np.diff(line, axis=0).T).sum()) > 1.0:
+                self.trails.append(Trail(np.array(line, float), width_m, ground, kind))
+            return
         for part in lines_of(shapely.intersection(LineString(line), self.box)):
             self.trails.append(Trail(part, width_m, ground, kind))
 

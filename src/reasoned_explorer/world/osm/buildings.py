@@ -25,8 +25,11 @@ from reasoned_explorer.world.world import Bounds, Building
 _LEVEL_M = 3.0
 _MIN_HEIGHT_M, _MAX_HEIGHT_M = 1.0, 900.0
 _MIN_AREA_M2 = 1.0
+_MIN_COURTYARD_M2 = 4.0
 _ENTRANCE_REACH_M = 1.0
 _ROOF_THICKNESS_M = 0.4
+# Headroom of a passage through a building: that of a gateway for delivery vans (assumed).
+_PASSAGE_HEIGHT_M = 3.5
 #: A building whose underside is higher than this can be walked under.
 WALK_UNDER_M = 2.0
 _ROOFS = frozenset({"roof", "carport", "canopy"})
@@ -114,6 +117,7 @@ class BuildingSet:
         tree: Over the footprints of those that one cannot walk under.
         standing: Places in ``buildings`` of what the tree holds.
         counts: For the report.
+        courtyards: Their courtyards, as polygons.
     """
 
     buildings: tuple[Building, ...]
@@ -121,6 +125,7 @@ class BuildingSet:
     tree: Any
     standing: NDArray[np.intp]
     counts: dict[str, int]
+    courtyards: tuple[Any, ...] = ()
 
     def containing(self, points: Any) -> NDArray[np.intp]:
         """Return for each point the place of the building it lies in (the first of several), or -1."""
@@ -141,8 +146,12 @@ class BuildingSet:
         return found
 
 
-def buildings_of(areas: Sequence[Feature], doors: Sequence[Feature], bounds: Bounds, *, seed: int) -> BuildingSet:
+def buildings_of(
+    areas: Sequence[Feature], doors: Sequence[Feature], passages: Sequence[Any], bounds: Bounds, *, seed: int
+) -> BuildingSet:
     """Make the buildings of a map's areas and entrances.
+
+    Passages, polygons, lead through them: what is above is a building of its own that one can walk under.
 
     Where an outline has parts (building:part) that stand on the ground, the parts carry its heights and the outline
     only what they leave over, so that nothing stands there twice; parts higher up are put on top of it.
@@ -153,18 +162,39 @@ def buildings_of(areas: Sequence[Feature], doors: Sequence[Feature], bounds: Bou
     pieces = _without_parts(outlines, grounded) + [(part, part.shape) for part in parts]
     built: list[Building] = []
     footprints: list[Any] = []
+    courtyards: list[Any] = []
     if pieces:
-        for (feature, _), shape in zip(pieces, clip([shape for _, shape in pieces], bounds), strict=True):
+        shapes = clip([shape for _, shape in pieces], bounds)
+        courtyards = _courtyards(shapes)
+        for (feature, _), (shape, above) in zip(pieces, _cut_through(shapes, passages), strict=True):
             for polygon in polygons_of(shape, min_area_m2=_MIN_AREA_M2):
                 built.append(_building(feature, polygon, seed))
                 footprints.append(polygon)
+            for polygon in polygons_of(above, min_area_m2=_MIN_AREA_M2):
+                arch = _building(feature, polygon, seed)
+                if arch.height_m > _PASSAGE_HEIGHT_M + _ROOF_THICKNESS_M:
+                    built.append(replace(arch, min_height_m=max(arch.min_height_m, _PASSAGE_HEIGHT_M)))
+                    footprints.append(polygon)
     buildings = _with_entrances(built, footprints, doors)
     standing = np.array([at for at, one in enumerate(buildings) if one.min_height_m <= WALK_UNDER_M], dtype=np.intp)
     counts = {"building outlines": len(outlines), "building parts": len(parts), "buildings": len(buildings)}
     for source in ("height", "levels", "default"):
         counts[f"buildings with height from {source}"] = sum(one.height_source == source for one in buildings)
     tree = shapely.STRtree([footprints[at] for at in standing])
-    return BuildingSet(buildings, tuple(footprints), tree, standing, counts)
+    return BuildingSet(buildings, tuple(footprints), tree, standing, counts, tuple(courtyards))
+
+
+def _cut_through(shapes: Any, passages: Sequence[Any]) -> list[tuple[Any, Any]]:
+    """Return for each footprint what passages leave of it, and what lies above them (or None)."""
+    found: list[tuple[Any, Any]] = [(shape, None) for shape in shapes]
+    if not len(passages):
+        return found
+    at, passage = shapely.STRtree(passages).query(np.asarray(shapes, dtype=object), predicate="intersects")
+    for place in np.unique(at).tolist():
+        corridor = shapely.union_all([passages[index] for index in passage[at == place]])
+        whole = shapely.make_valid(shapes[place])
+        found[place] = shapely.difference(whole, corridor), shapely.intersection(whole, corridor)
+    return found
 
 
 def _without_parts(outlines: Sequence[Feature], parts: Sequence[Feature]) -> list[tuple[Feature, Any]]:
@@ -235,7 +265,8 @@ def _is_way_in(tags: Tags) -> bool:
     return kind is not None and kind not in _NO_WAY_IN
 
 
-def courtyards_of(buildings: Sequence[Building], *, min_area_m2: float = 4.0) -> list[Any]:
-    """Return the courtyards of buildings as polygons, ENU metres."""
-    holes = [polygon_of(hole) for one in buildings for hole in one.holes]
-    return [hole for hole in holes if hole.area >= min_area_m2]
+def _courtyards(shapes: Sequence[Any]) -> list[Any]:
+    """Return the courtyards of footprints, those that a passage leads into among them."""
+    holes = [polygon_of(rings_of(polygon)[1][at]) for shape in shapes for polygon in polygons_of(shape)
+             for at in range(len(polygon.interiors))]  # fmt: skip
+    return [hole for hole in holes if hole.area >= _MIN_COURTYARD_M2]

@@ -34,6 +34,9 @@ _MIN_AREA_M2 = {"lawn": 25.0, "playground": 10.0, "pitch": 20.0}
 _AT_THE_WALL_M = 2.0
 # One stands this far before the door that one has come to.
 _DOORSTEP_M = 0.5
+# It keeps this clear of every wall, so that it is open ground in a picture with cells of half a metre, too.
+_CLEAR_M = 0.36
+_FARTHEST_OUT_M = 80.0
 # A mapped door counts as a place's own where it is at most this much farther off than the nearest wall to a street.
 _DOOR_DETOUR_M = 20.0
 _MOST_HOUSES_DEEP = 6
@@ -303,15 +306,19 @@ def _door(
         outside = [step for step in steps if step is not None]
         if not outside:
             break
-        others = buildings.containing(shapely.points([step[:2] for step in outside])).tolist()
-        for step, other in zip(outside, others, strict=True):
-            if other < 0:
+        points = shapely.points([step[:2] for step in outside])
+        # A step between two walls that nearly touch is none.
+        for step, near in zip(outside, buildings.nearest(points, reach_m=_CLEAR_M).tolist(), strict=True):
+            if near < 0:
                 return step
+        others = buildings.containing(points).tolist()
+        if others[-1] < 0:
+            break
         building, here = others[-1], shapely.Point(outside[-1][:2])
     if target is None:
         return None
     # The nearest way leads through the house itself: take the nearest wall instead.
-    return _out_towards(draft, buildings, target) or _door(draft, buildings, None)
+    return _out_towards(draft, buildings, target) or _door(draft, buildings, None) or _out_anywhere(draft, buildings)
 
 
 def _out_towards(
@@ -321,11 +328,26 @@ def _out_towards(
     gap_m = math.hypot(target[0] - draft.x_m, target[1] - draft.y_m)
     share = np.linspace(0.0, 1.0, max(2, math.ceil(gap_m / _DOORSTEP_M) + 1))
     spots = np.column_stack([draft.x_m + share * (target[0] - draft.x_m), draft.y_m + share * (target[1] - draft.y_m)])
-    free = np.flatnonzero(buildings.containing(shapely.points(spots)) < 0)
+    return _first_open(draft, buildings, spots)
+
+
+def _out_anywhere(draft: _Draft, buildings: BuildingSet) -> tuple[float, float, float] | None:
+    """Return about the nearest open spot, for places deep in large buildings whose ways are indoors."""
+    turns = np.arange(24) * (math.pi / 12.0)
+    reach_m = np.repeat(np.arange(1.0, _FARTHEST_OUT_M, 1.0), len(turns))
+    turns = np.tile(turns, len(reach_m) // len(turns))
+    around = np.column_stack([np.sin(turns), np.cos(turns)]) * reach_m[:, None]
+    return _first_open(draft, buildings, np.array([draft.x_m, draft.y_m]) + around)
+
+
+def _first_open(draft: _Draft, buildings: BuildingSet, spots: Any) -> tuple[float, float, float] | None:
+    """Return the first of some spots that keeps clear of all walls, facing away from where the place is drawn."""
+    points = shapely.points(spots)
+    free = np.flatnonzero(buildings.nearest(points, reach_m=_CLEAR_M) < 0)
     if not len(free):
         return None
-    x_m, y_m = spots[free[0]]
-    return float(x_m), float(y_m), heading_towards_rad(draft.x_m, draft.y_m, target[0], target[1])
+    x_m, y_m = (float(value) for value in spots[free[0]])
+    return x_m, y_m, heading_towards_rad(draft.x_m, draft.y_m, x_m, y_m)
 
 
 def _step_before(wall: Any, footprint: Any) -> tuple[float, float, float] | None:
@@ -369,8 +391,8 @@ def _outward_rad(wall: Any, footprint: Any) -> float | None:
         best = int(close[np.argmax(np.where(np.isfinite(length[close]), length[close], 0.0))])
         across_rad = math.atan2(along[best, 0], along[best, 1]) + math.pi / 2.0
         for heading_rad in (across_rad, across_rad + math.pi):
-            probe = shapely.Point(wall.x + 0.2 * math.sin(heading_rad), wall.y + 0.2 * math.cos(heading_rad))
-            if not footprint.intersects(probe):
+            probe_x_m, probe_y_m = wall.x + 0.2 * math.sin(heading_rad), wall.y + 0.2 * math.cos(heading_rad)
+            if not shapely.intersects_xy(footprint, probe_x_m, probe_y_m):
                 return normalise_heading_rad(heading_rad)
     return None
 

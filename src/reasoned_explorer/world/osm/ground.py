@@ -10,6 +10,7 @@ from reasoned_explorer.world.osm.tags import (
     Tags,
     is_below_ground,
     is_gone,
+    is_passage,
     is_set,
     layer_of,
     parse_count,
@@ -180,6 +181,8 @@ def ground_of_line(tags: Tags) -> LineGround | None:
 
 def level_of(tags: Tags) -> int:
     """Return the level of a way: 0 on the ground, above for bridges, below for tunnels, other than 0 indoors."""
+    if is_passage(tags):
+        return 0  # the buildings are cut, see `buildings_of`
     layer = layer_of(tags)
     if is_set(tags, "bridge"):
         return max(layer, 1)
@@ -195,8 +198,9 @@ def _highway(tags: Tags) -> LineGround | None:
     if kind in _FOOT_WIDTH_M:
         ground, width_m = _FOOT_GROUND[kind], _FOOT_WIDTH_M[kind]
         if kind in {"footway", "path", "cycleway"}:
-            if "crossing" in {tags.get("footway"), tags.get("path"), tags.get("cycleway")}:
-                ground = Ground.ROAD
+            if "crossing" in {tags.get("footway"), tags.get("path")}:
+                # Where walkers cross, the road is theirs: painted over it, as zebras are.
+                ground = Ground.PAVEMENT
             elif tags.get("footway") in {"sidewalk", "traffic_island", "access_aisle", "link"}:
                 ground = Ground.PAVEMENT
         return LineGround(FOOT_ORDER, ground, _width_m(tags, width_m), level_of(tags))

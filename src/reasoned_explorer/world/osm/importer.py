@@ -11,12 +11,12 @@ import shapely
 
 from reasoned_explorer.geometry import GeoOrigin
 from reasoned_explorer.model import Fault, WorldError
-from reasoned_explorer.world.osm.buildings import buildings_of, courtyards_of
+from reasoned_explorer.world.osm.buildings import buildings_of
 from reasoned_explorer.world.osm.features import features_of
 from reasoned_explorer.world.osm.furniture import objects_of
 from reasoned_explorer.world.osm.paths import PathIndex
 from reasoned_explorer.world.osm.reading import BoxDeg, Extract, read_extract
-from reasoned_explorer.world.osm.surfaces import regions_of, ways_of
+from reasoned_explorer.world.osm.surfaces import passages_of, regions_of, ways_of
 from reasoned_explorer.world.osm.tags import class_of
 from reasoned_explorer.world.world import Bounds, World
 
@@ -85,9 +85,9 @@ def import_osm_with_report(
             [Fault(f"nothing in {file.name} lies within {_show(bbox)}", "a bbox that the file covers",
                    f"the file covers {_show(extract.header_box_deg)}" if extract.header_box_deg else "check the bbox")],
         )  # fmt: skip
-    buildings = buildings_of(features.areas, features.points, bounds, seed=seed)
-    ways = ways_of(features.lines, bounds)
-    regions, region_counts = regions_of(features.areas, features.lines, courtyards_of(buildings.buildings), bounds)
+    buildings = buildings_of(features.areas, features.points, passages_of(features.lines), bounds, seed=seed)
+    ways = ways_of(features.lines, features.points, bounds)
+    regions, region_counts = regions_of(features.areas, features.lines, buildings.courtyards, bounds)
     placed = objects_of(
         features.points, features.lines, features.areas,
         buildings=buildings, paths=PathIndex(ways), bounds=bounds, seed=seed,
@@ -175,16 +175,18 @@ def _whole(extract: Extract, file: Path, warnings: list[str]) -> BoxDeg:
     Raises:
         WorldError: There is nothing in it, or even that is too large.
     """
-    candidates = [box for box in (extract.header_box_deg, _extent(extract), _built_up(extract)) if box is not None]
-    if _extent(extract) is None:
+    extent = _extent(extract)
+    if extent is None:
         fault = Fault(f"there is nothing in {file.name}", "nodes and ways with tags", "check what was extracted")
         raise WorldError("OpenStreetMap file", [fault])
-    for box in candidates:
-        if not _size_faults(box, ""):
-            if box != candidates[0]:
-                warnings.append(f"{_show(candidates[0])} is too large; imported what is built up: {_show(box)}")
+    first = extent if extract.header_box_deg is None else extract.header_box_deg
+    if not _size_faults(first, ""):
+        return first
+    for box in (extent, _built_up(extract)):
+        if box is not None and not _size_faults(box, ""):
+            warnings.append(f"{_show(first)} is too large; imported what is built up: {_show(box)}")
             return box
-    raise WorldError("OpenStreetMap file", _size_faults(candidates[0], _CROP))
+    raise WorldError("OpenStreetMap file", _size_faults(first, _CROP))
 
 
 def _extent(extract: Extract) -> BoxDeg | None:

@@ -11,7 +11,9 @@ from reasoned_explorer.world.osm.coastline import sea_of
 from reasoned_explorer.world.osm.features import Feature
 from reasoned_explorer.world.osm.ground import (
     BASE_LAYER,
+    FOOT_ORDER,
     PAVEMENT_ORDER,
+    ROAD_ORDER,
     SEA_LAYER,
     WATER_ORDER,
     LineGround,
@@ -19,12 +21,17 @@ from reasoned_explorer.world.osm.ground import (
     ground_of_line,
 )
 from reasoned_explorer.world.osm.shapes import clip, lines_of, polygons_of, rings_of
-from reasoned_explorer.world.osm.tags import clean_text, is_set
+from reasoned_explorer.world.osm.tags import clean_text, is_passage, is_set
 from reasoned_explorer.world.taxonomy import Ground
 from reasoned_explorer.world.world import Bounds, Region, Way
 
 _MIN_AREA_M2 = 1.0
 _MIN_LENGTH_M = 0.2
+_ON_THE_LINE_M = 0.5
+# A zebra is 3 to 4 m wide (German R-FGÜ: 4 m, at least 3 m).
+_CROSSING_WIDTH_M = 3.0
+# A passage through a house is at least as wide as a gate for people.
+_LEAST_PASSAGE_M = 2.5
 #: The kind of the pavements that a road's ``sidewalk`` tag stands for.
 SIDEWALK_KIND = "sidewalk"
 
@@ -56,10 +63,21 @@ def regions_of(
     return tuple(regions), counts
 
 
-def ways_of(lines: Sequence[Feature], bounds: Bounds) -> tuple[Way, ...]:
+def passages_of(lines: Sequence[Feature]) -> list[Any]:
+    """Return the corridors of ways that lead through buildings at street level, as polygons."""
+    found = [line for line in lines if is_passage(line.tags)]
+    meant = [(line.shape, meaning) for line in found if (meaning := ground_of_line(line.tags)) is not None]
+    return [
+        shapely.buffer(shape, max(meaning.width_m, _LEAST_PASSAGE_M) / 2.0, cap_style="square", join_style="mitre")
+        for shape, meaning in meant
+    ]
+
+
+def ways_of(lines: Sequence[Feature], points: Sequence[Feature], bounds: Bounds) -> tuple[Way, ...]:
     """Return the ways of a map's lines in drawing order; each road's pavements lie below the roads.
 
-    A bridge makes the ground where nothing that one could walk or drive on passes below it (over water, mostly).
+    Crossings lie above the roads: those drawn as ways, and those drawn as points on a road that no such way meets. A
+    bridge makes the ground where nothing that one could walk or drive on passes below it (over water, mostly).
     """
     meant = [(line, meaning) for line in lines if (meaning := ground_of_line(line.tags)) is not None]
     drawn: list[tuple[LineGround, Feature, Any]] = []
@@ -74,16 +92,53 @@ def ways_of(lines: Sequence[Feature], bounds: Bounds) -> tuple[Way, ...]:
         if meaning.left_m or meaning.right_m:
             pavement, shape = _pavement(meaning, line.shape)
             drawn.append((pavement, line, shape))
+    drawn += _crossings(points, meant)
     drawn.sort(key=lambda item: (item[0].order, item[0].width_m, item[1].osm_id))
     ways: list[Way] = []
     if drawn:
         for (meaning, line, _), shape in zip(drawn, clip([item[2] for item in drawn], bounds), strict=True):
             kind = SIDEWALK_KIND if meaning.order == PAVEMENT_ORDER else _kind(line)
             for piece in lines_of(_merged(shape), min_length_m=_MIN_LENGTH_M):
-                points = np.ascontiguousarray(shapely.get_coordinates(piece))
+                path = np.ascontiguousarray(shapely.get_coordinates(piece))
                 name = clean_text(line.tags.get("name", ""))
-                ways.append(Way(kind, meaning.ground, points, meaning.width_m, name, meaning.level))
+                ways.append(Way(kind, meaning.ground, path, meaning.width_m, name, meaning.level))
     return tuple(ways)
+
+
+def _crossings(
+    points: Sequence[Feature], meant: Sequence[tuple[Feature, LineGround]]
+) -> list[tuple[LineGround, Feature, Any]]:
+    """Return strips straight across roads where points on them are crossings."""
+    nodes = [
+        point for point in points if point.tags.get("highway") == "crossing" and point.tags.get("crossing") != "no"
+    ]
+    level = [(line, meaning) for line, meaning in meant if meaning.level == 0]
+    roads = [(line.shape, meaning.width_m) for line, meaning in level if meaning.order == ROAD_ORDER]
+    if not nodes or not roads:
+        return []
+    places = np.array([node.shape for node in nodes], dtype=object)
+    drawn = [line.shape for line, meaning in level if meaning.order == FOOT_ORDER and meaning.ground == Ground.PAVEMENT]
+    known = np.zeros(len(nodes), dtype=bool)
+    if drawn:
+        known[shapely.STRtree(drawn).query(places, predicate="dwithin", distance=_ON_THE_LINE_M)[0]] = True
+    at, road = shapely.STRtree([shape for shape, _ in roads]).query(
+        places, predicate="dwithin", distance=_ON_THE_LINE_M
+    )
+    pairs = sorted(zip(at.tolist(), road.tolist(), strict=True), key=lambda pair: (roads[pair[1]][1], pair))
+    on_road = dict(pairs)  # of several, the widest
+    made: list[tuple[LineGround, Feature, Any]] = []
+    for node, line in sorted(on_road.items()):
+        if known[node]:
+            continue
+        shape, width_m = roads[line]
+        where = shape.project(places[node])
+        back, ahead = shape.interpolate(max(where - 1.0, 0.0)), shape.interpolate(min(where + 1.0, shape.length))
+        along = np.array([ahead.x - back.x, ahead.y - back.y])
+        middle = shapely.get_coordinates(places[node])[0]
+        across = np.array([-along[1], along[0]]) / max(float(np.hypot(*along)), 1e-9) * width_m / 2.0
+        strip = LineGround(FOOT_ORDER, Ground.PAVEMENT, _CROSSING_WIDTH_M, 0)
+        made.append((strip, nodes[node], shapely.linestrings(np.array([middle - across, middle + across]))))
+    return made
 
 
 class _Below:

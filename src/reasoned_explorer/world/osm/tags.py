@@ -33,7 +33,7 @@ _ATTRIBUTE_LENGTH = 80
 # Where a feature has several tags that mean something, the earlier key decides: the more special one first.
 _CLASS_KEYS = ("emergency", "vending", "highway", "amenity", "leisure", "tourism", "historic", "advertising", "barrier",
                "man_made", "natural", "playground", "shop", "landuse", "traffic_sign")  # fmt: skip
-_GONE = ("disused", "abandoned", "demolished", "razed", "removed", "proposed")
+_GONE = frozenset({"disused", "abandoned", "demolished", "razed", "removed", "proposed"})
 _NOT_A_SHOP = frozenset({"no", "none", "vacant", "disused"})
 # A plate in a wall or in the ground is no monument that one could see from afar.
 _PLATES = frozenset({"plaque", "blue_plaque", "stolperstein", "stolperschwelle", "plate", "ghost_bike"})
@@ -109,8 +109,11 @@ def _one_direction_deg(text: str) -> float | None:
 
 def layer_of(tags: Tags) -> int:
     """Return the layer of a feature: its tag, clipped to [-10, 10], or 0 where there is none that makes sense."""
+    text = tags.get("layer")
+    if text is None:
+        return 0
     try:
-        return max(-10, min(10, int(float(tags.get("layer", "0")))))
+        return max(-10, min(10, int(float(text))))
     except (ValueError, OverflowError):
         return 0
 
@@ -120,9 +123,14 @@ def is_set(tags: Tags, key: str) -> bool:
     return tags.get(key, "no") not in {"no", "none", "false", "0"}
 
 
+def is_passage(tags: Tags) -> bool:
+    """Return whether a way leads through a building at the level of the street."""
+    return tags.get("tunnel") == "building_passage" and "highway" in tags
+
+
 def is_gone(tags: Tags) -> bool:
     """Return whether a feature is said to be out of use, gone or only planned."""
-    return any(tags.get(key) in {"yes", "true"} for key in _GONE)
+    return not _GONE.isdisjoint(tags) and any(tags.get(key) in {"yes", "true"} for key in _GONE)
 
 
 def is_below_ground(tags: Tags) -> bool:
@@ -137,7 +145,7 @@ def class_of(tags: Tags, *, is_node: bool) -> str | None:
         tags: Its tags.
         is_node: Whether it is a single point; on lines and areas ``traffic_sign`` states a rule and no sign.
     """
-    if is_gone(tags):
+    if CLASS_KEYS.isdisjoint(tags) or is_gone(tags):
         return None
     for key in _CLASS_KEYS:
         value = tags.get(key)
