@@ -1,4 +1,5 @@
 import math
+from typing import Any
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -7,8 +8,8 @@ from reasoned_explorer.exploration.graph import FrontierState, TopologicalGraph
 from reasoned_explorer.geometry import Pose
 
 
-def _graph() -> TopologicalGraph:
-    graph = TopologicalGraph()
+def _graph(**settings: Any) -> TopologicalGraph:
+    graph = TopologicalGraph(**settings)
     graph.add_point(Pose(0.0, 0.0))
     return graph
 
@@ -102,3 +103,47 @@ def test_distance_is_that_of_the_way_not_of_the_straight_line() -> None:
     assert choice.frontier is behind_the_wall
     assert math.isclose(choice.distance_m, math.hypot(8.0, 50.0) + 50.0 + 5.0)
     assert choice.penalty > 0.99
+
+
+def test_a_frontier_that_was_passed_close_by_costs_at_least_the_half_distance() -> None:
+    graph = _graph(known_radius_m=5.0)
+    passed = graph.add_frontier(0, Pose(11.0, 0.0), 3.0)
+    fresh = graph.add_frontier(0, Pose(-12.0, 0.0), 2.6)
+    north = graph.add_point(Pose(0.0, 11.0), previous=0)
+    east = graph.add_point(Pose(15.0, 11.0), previous=north)
+    assert not passed.known
+    south = graph.add_point(Pose(15.0, -11.0), previous=east)  # this leg passes 4 m from it
+    assert passed.known
+    graph.add_point(Pose(0.0, 0.5), previous=south)
+    choice = graph.choose(0)
+    assert choice is not None
+    assert choice.frontier is fresh  # 2.6 beats 3.0 - 0.5
+    graph.take(fresh)
+    choice = graph.choose(0)
+    assert choice is not None
+    assert (choice.frontier, choice.penalty, choice.value) == (passed, 0.5, 2.5)
+
+
+def test_legs_from_its_own_path_point_make_no_frontier_known() -> None:
+    graph = _graph(known_radius_m=5.0)
+    graph.add_point(Pose(0.0, 5.0), previous=0)
+    aside = graph.add_frontier(0, Pose(2.0, 4.0), 3.0)
+    assert not aside.known
+
+
+def test_the_distance_may_be_the_straight_one() -> None:
+    graph = _graph(straight=True)
+    around = graph.add_point(Pose(0.0, 50.0), previous=0)
+    last = graph.add_point(Pose(8.0, 5.0), previous=around)
+    graph.add_frontier(0, Pose(5.0, 5.0), 3.0)
+    choice = graph.choose(last)
+    assert choice is not None
+    assert math.isclose(choice.distance_m, 3.0)
+
+
+def test_without_a_known_radius_nothing_is_known() -> None:
+    graph = _graph()
+    frontier = graph.add_frontier(0, Pose(5.0, 5.0), 3.0)
+    one = graph.add_point(Pose(4.0, 0.0), previous=0)
+    graph.add_point(Pose(6.0, 10.0), previous=one)
+    assert not frontier.known

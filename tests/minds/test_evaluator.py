@@ -4,9 +4,10 @@ import pytest
 
 from reasoned_explorer.knowledge.cooccurrence import load_cooccurrence
 from reasoned_explorer.minds.embedded import default_senses
-from reasoned_explorer.minds.embedded.evaluator import assess
-from reasoned_explorer.minds.embedded.relevance import Senses
-from reasoned_explorer.model import GoalError
+from reasoned_explorer.minds.embedded.evaluator import assess, level_of
+from reasoned_explorer.minds.embedded.reading import read_scene
+from reasoned_explorer.minds.embedded.relevance import Senses, relevance_of
+from reasoned_explorer.model import LIKERT_LEVELS, GoalError
 from tests.minds.helpers import STREET, WALL
 
 WORDS_ONLY = default_senses(with_embedder=False)
@@ -45,10 +46,22 @@ def test_what_is_said_not_to_be_there_does_not_count():
 
 def test_conditions_stated_beat_conditions_possible_beat_conditions_absent():
     goal = "Find me a bench under a tree"
-    stated = _score(goal, "In the foreground there is a bench under a tree.")
-    possible = _score(goal, "In the foreground there is a bench and a tree.")
-    absent = _score(goal, "In the foreground there is a bench.")
+    scenes = (
+        "In the foreground there is a bench under a tree.",
+        "In the foreground there is a bench and a tree.",
+        "In the foreground there is a bench.",
+    )
+    relevance = relevance_of(goal, WORDS_ONLY)
+    stated, possible, absent = (level_of(read_scene(scene), relevance) for scene in scenes)
     assert stated > possible > absent
+    answers = [_score(goal, scene) for scene in scenes]
+    assert answers == sorted(answers, reverse=True)
+    assert answers[0] > answers[-1]
+
+
+def test_answers_are_whole_levels_of_the_scale():
+    for scene in ("A bench stands close by.", "In the distance there is a bench.", "A road leads straight ahead."):
+        assert _score("Find me a bench", scene) in LIKERT_LEVELS
 
 
 def test_shunned_ground_ahead_is_forbidden_and_wanted_ground_is_better():

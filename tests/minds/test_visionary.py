@@ -1,13 +1,16 @@
+import asyncio
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reasoned_explorer.minds.embedded import default_senses
+from reasoned_explorer.minds.embedded import default_senses, minds_with
 from reasoned_explorer.minds.embedded.lexicon import data_lines
 from reasoned_explorer.minds.embedded.reading import FAR, MIDDLE, NEAR, read_scene
 from reasoned_explorer.minds.embedded.relevance import Senses
 from reasoned_explorer.minds.embedded.visionary import WORDS, imagine_texts
-from tests.minds.helpers import KOSMOS, STREET, WALL
+from reasoned_explorer.model import Goal
+from tests.minds.helpers import KOSMOS, STREET, WALL, mind_context, scene
 
 WORDS_ONLY = default_senses(with_embedder=False)
 LINES = data_lines("background_scenes")
@@ -97,3 +100,14 @@ def test_even_nothing_leads_somewhere(text):
 def test_without_statistics_common_things_are_imagined():
     texts = imagine_texts(STREET, seed=0, key=(0, 0, 0), count=3, senses=Senses())
     assert len(set(texts)) == 3
+
+
+def test_the_same_is_imagined_beyond_the_same_view_wherever_it_was_seen():
+    minds = minds_with(mind_context(), WORDS_ONLY).visionary
+    goal = Goal("Find me a bench", 1)
+    scenes = [scene(STREET, 0, 0, 0), scene(STREET, 7, 0, 2)]
+    first, second = asyncio.run(minds.imagine(goal, scenes, count=3))
+    assert [child.text for child in first] == [child.text for child in second]
+    assert len({child.text for child in first}) == 3
+    deeper = asyncio.run(minds.imagine(goal, first, count=1))
+    assert len({children[0].text for children in deeper}) == 3

@@ -84,6 +84,8 @@ def run_from_options(options: RunOptions) -> None:
     """Run a mission, show it while it runs, keep its record and its map, and exit with what came of it."""
     console = Console(highlight=False)
     settings = options.settings()
+    if not options.quiet and not _kernels_are_compiled():
+        console.print("compiling the kernels, which takes up to a minute (the first time only) …", markup=False)
     world = open_world(options.world, seed=options.seed, bbox=parse_bbox(options.bbox))
     mission = Mission(options.goal, world, settings, start=parse_start(options.start, world))
     folder = _folder(options)
@@ -104,6 +106,13 @@ def run_from_options(options: RunOptions) -> None:
     _keep(result, folder, draw=options.draw)
     console.print(f"kept in {folder}", markup=False, soft_wrap=True)
     raise typer.Exit(_exit_code(result))
+
+
+def _kernels_are_compiled() -> bool:
+    """Return whether the kernel that takes longest to compile is in numba's store on disk."""
+    from reasoned_explorer.simulation.kernels import run_leg
+
+    return any(Path(run_leg.stats.cache_path).glob("kernels.run_leg-*.nbi"))
 
 
 def _keep(result: MissionResult, folder: Path, *, draw: bool) -> None:

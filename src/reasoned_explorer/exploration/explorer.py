@@ -94,7 +94,11 @@ class Explorer:
 
     def __post_init__(self) -> None:
         self.graph = TopologicalGraph(
-            self.settings.merge_radius_m, self.settings.sharpness_per_m, self.settings.half_distance_m
+            self.settings.merge_radius_m,
+            self.settings.sharpness_per_m,
+            self.settings.half_distance_m,
+            self.settings.known_radius_m,
+            self.settings.straight_distance,
         )
 
     async def run(self, goal: Goal) -> Exploration:

@@ -8,6 +8,9 @@ from enum import StrEnum
 from reasoned_explorer.exploration.penalty import distance_penalty
 from reasoned_explorer.geometry import Pose
 
+#: σ(d0): what a frontier costs at least where the robot has already passed close by.
+_KNOWN_PENALTY = 0.5
+
 
 class FrontierState(StrEnum):
     """What has become of a frontier."""
@@ -50,7 +53,7 @@ class Choice:
     Attributes:
         frontier: The frontier.
         distance_m: d, along the way to it, metres.
-        penalty: σ(d); 1 where the robot has passed close by.
+        penalty: σ(d), and at least one half where the robot has passed close by.
         value: Q − σ(d), rounded to 1e-4; None where Q is missing.
     """
 
@@ -68,13 +71,15 @@ class TopologicalGraph:
         merge_radius_m: A path point this near to an older one is that one.
         sharpness_per_m: k of σ(d).
         half_distance_m: d0 of σ(d).
-        known_radius_m: What lies this near to a path point or a leg has been passed close by; 0 for never.
+        known_radius_m: What lies this near to a leg has been passed close by, and costs at least one half; 0 for never.
+        straight: Whether d is the straight distance instead of the length of the way along known edges.
     """
 
     merge_radius_m: float = 1.5
     sharpness_per_m: float = 0.5
     half_distance_m: float = 60.0
-    known_radius_m: float = 8.0
+    known_radius_m: float = 0.0
+    straight: bool = False
     points: list[Pose] = field(default_factory=list)
     edges: dict[int, dict[int, float]] = field(default_factory=dict)
     frontiers: list[Frontier] = field(default_factory=list)
@@ -113,7 +118,7 @@ class TopologicalGraph:
             frontier.state, frontier.reason = FrontierState.BLOCKED, blocked_by
         else:
             self._open[frontier.id] = frontier
-            frontier.known = any(
+            frontier.known = self.known_radius_m > 0.0 and any(
                 self._lies_by(frontier, one, other)
                 for one, others in self.edges.items()
                 for other in others
@@ -123,7 +128,7 @@ class TopologicalGraph:
 
     def _pass_by(self, one: int, other: int) -> None:
         """Note which open frontiers a new leg passes."""
-        for frontier in self._open.values():
+        for frontier in self._open.values() if self.known_radius_m > 0.0 else ():
             frontier.known = frontier.known or self._lies_by(frontier, one, other)
 
     def _lies_by(self, frontier: Frontier, one: int, other: int) -> bool:
@@ -142,36 +147,36 @@ class TopologicalGraph:
 
         argmax of Q − σ(d) (paper, section IV-A), rounded to 1e-4; ties go to the nearer, then the older frontier. d is
         how far the robot has to travel: the authors fly straight, this agent goes along known edges, and a frontier
-        that is 10 m away behind a wall may be 200 m away on the way that it knows. What the robot has passed close by
-        has been seen, and costs as much as the farthest frontier (O): small differences of Q would otherwise keep it
-        going to and fro in one place. Frontiers on shunned ground come after all others, frontiers without a score
-        after those with one.
+        that is 10 m away behind a wall may be 200 m away on the way that it knows. With a known radius, what the robot
+        has passed close by costs no less than a frontier at the half distance d0 (O). Frontiers on shunned ground come
+        after all others, frontiers without a score after those with one.
 
         Args:
             start: The path point that the robot is at.
         """
         best: Choice | None = None
         best_rank: tuple[bool, bool, float, float, int] | None = None
-        _, length_m = self._search(start, None)
+        length_m = {} if self.straight else self._search(start, None)[1]
         for frontier in self._open.values():
-            parent = self.points[frontier.parent]
-            distance_m = length_m.get(frontier.parent, math.inf)
-            distance_m += parent.distance_to_m(frontier.pose.x_m, frontier.pose.y_m)
-            if math.isinf(distance_m):  # joined by no edge: the route there is straight
-                distance_m = self.points[start].distance_to_m(frontier.pose.x_m, frontier.pose.y_m)
-            penalty = (
-                1.0
-                if frontier.known
-                else distance_penalty(
-                    distance_m, sharpness_per_m=self.sharpness_per_m, half_distance_m=self.half_distance_m
-                )
+            distance_m = self._distance_m(start, frontier, length_m)
+            penalty = distance_penalty(
+                distance_m, sharpness_per_m=self.sharpness_per_m, half_distance_m=self.half_distance_m
             )
+            if frontier.known:
+                penalty = max(penalty, _KNOWN_PENALTY)
             value = None if frontier.q is None else round(frontier.q - penalty, 4)
             # Distances are compared to the millimetre: what lies equally far must not be told apart by rounding.
             rank = (frontier.forbidden, value is None, -(value or 0.0), round(distance_m, 3), frontier.id)
             if best_rank is None or rank < best_rank:
                 best, best_rank = Choice(frontier, distance_m, penalty, value), rank
         return best
+
+    def _distance_m(self, start: int, frontier: Frontier, length_m: dict[int, float]) -> float:
+        """Return d, given how far it is along known edges to each path point."""
+        if frontier.parent not in length_m:  # asked for straight, or joined by no edge
+            return self.points[start].distance_to_m(frontier.pose.x_m, frontier.pose.y_m)
+        parent = self.points[frontier.parent]
+        return length_m[frontier.parent] + parent.distance_to_m(frontier.pose.x_m, frontier.pose.y_m)
 
     def take(self, frontier: Frontier) -> None:
         """Take a chosen frontier out of the buffer: it becomes a path point when it is reached."""

@@ -20,6 +20,10 @@ class ExplorerSettings:
         looks_to_confirm: Looks that must agree before "Found Goal" is declared, at least 1 (O: 2).
         sharpness_per_m: k of σ(d) (C: 0.5).
         half_distance_m: d0 of σ(d), metres (C: 60).
+        straight_distance: Whether d is the straight distance instead of the length of the way along known edges; the
+            authors fly straight, so that theirs is both (P leaves it open).
+        known_radius_m: A frontier this near to an earlier leg costs at least σ(d0), metres; 0 for never, which is the
+            paper's Q − σ(d) (O).
         merge_radius_m: Path points nearer than this are one (O).
         revisit_radius_m: A new frontier nearer than this to an older path point was already visited (O).
         look_back_after_stop: Whether the look after a leg that something stopped takes in what lies behind, too, with N
@@ -36,6 +40,8 @@ class ExplorerSettings:
     looks_to_confirm: int = 2
     sharpness_per_m: float = 0.5
     half_distance_m: float = 60.0
+    straight_distance: bool = False
+    known_radius_m: float = 0.0
     merge_radius_m: float = 1.5
     revisit_radius_m: float = 3.0
     look_back_after_stop: bool = True
@@ -53,6 +59,7 @@ class ExplorerSettings:
             (1 <= self.looks_to_confirm <= 10, f"looks_to_confirm is {self.looks_to_confirm}", "1 to 10"),
             (0.0 <= self.sharpness_per_m <= 100.0, f"k is {self.sharpness_per_m}", "0 to 100 per metre"),
             (0.0 <= self.half_distance_m <= 1e6, f"d0 is {self.half_distance_m} m", "0 to 1,000,000 m"),
+            (0.0 <= self.known_radius_m <= 50.0, f"known radius is {self.known_radius_m} m", "0 to 50 m"),
             (0.0 <= self.merge_radius_m <= 50.0, f"merge radius is {self.merge_radius_m} m", "0 to 50 m"),
             (0.0 <= self.revisit_radius_m <= 50.0, f"revisit radius is {self.revisit_radius_m} m", "0 to 50 m"),
             (1 <= self.max_faults_in_a_row <= 100, f"max_faults_in_a_row is {self.max_faults_in_a_row}", "1 to 100"),

@@ -15,6 +15,7 @@ from reasoned_explorer.world.taxonomy import Ground
 
 if TYPE_CHECKING:
     from reasoned_explorer.world.atlas import Atlas
+    from reasoned_explorer.world.sight import SightLines
     from reasoned_explorer.world.sight_kernels import Grid
     from reasoned_explorer.world.world import World
 
@@ -54,9 +55,9 @@ class Eyes:
         self._sight = atlas.sight
         self._raster = atlas.ground
         self._frame = np.array([self._raster.min_x_m, self._raster.min_y_m, self._raster.cell_m])
-        if atlas not in _THINGS:
-            _THINGS[atlas] = _things_of(atlas.world)
-        self._things = _THINGS[atlas]
+        if self._sight not in _THINGS:
+            _THINGS[self._sight] = _things_of(atlas.world)
+        self._things = _THINGS[self._sight]
 
     def look(self, pose: Pose, camera: Camera) -> ViewContent:
         """Return what a camera sees.
@@ -124,8 +125,8 @@ class _Things:
     under: tuple[str | None, ...]
 
 
-#: Worked out once for each atlas, since many missions share one.
-_THINGS: "WeakKeyDictionary[Atlas, _Things]" = WeakKeyDictionary()
+#: Worked out once for each world (its sight lines stand for it), since many missions share one.
+_THINGS: "WeakKeyDictionary[SightLines, _Things]" = WeakKeyDictionary()
 
 
 def _things_of(world: "World") -> _Things:

@@ -6,7 +6,7 @@ from functools import lru_cache
 from reasoned_explorer.minds.embedded.reading import AHEAD, BACKGROUND, FAR, MIDDLE, NEAR, SceneReading, read_scene
 from reasoned_explorer.minds.embedded.relevance import Relevance, Senses, relevance_of
 from reasoned_explorer.minds.embedded.support import conditions_support
-from reasoned_explorer.model import Assessment
+from reasoned_explorer.model import Assessment, likert_from_score
 
 #: How sure one gets of having the thing a step further on, by how far away it is said to be.
 _SEEN = {NEAR: 1.0, None: 0.85, MIDDLE: 0.85, FAR: 0.6, BACKGROUND: 0.45}
@@ -66,11 +66,13 @@ def _ground_share(reading: SceneReading, relevance: Relevance) -> float:
     return 1.0
 
 
-def _binomial_levels(level: float) -> tuple[float, float, float, float, float]:
-    """Return probabilities of the levels 1 to 5 with the given expectation: one plus a binomial of four trials."""
-    p = min(1.0, max(0.0, (level - 1.0) / 4.0))
-    q = 1.0 - p
-    return (q**4, 4.0 * p * q**3, 6.0 * p * p * q * q, 4.0 * p**3 * q, p**4)
+def _likert(level: float) -> tuple[float, float, float, float, float]:
+    """Return the answer on the scale: the nearest level, half a level up.
+
+    Answers finer than the scale would be false precision. They matter: the agent compares Q − σ(d), so that a hundredth
+    of a level, which here means nothing, would send it 50 m back.
+    """
+    return likert_from_score(math.floor(level + 0.5))
 
 
 @lru_cache(maxsize=65536)
@@ -85,7 +87,7 @@ def assess(goal_text: str, scene_text: str, senses: Senses) -> Assessment:
         return Assessment(None, fault="the scene has no description")
     reading = read_scene(scene_text)
     return Assessment(
-        _binomial_levels(level_of(reading, relevance)),
+        _likert(level_of(reading, relevance)),
         blocked=reading.blocked,
         forbidden=reading.ground_ahead is not None and reading.ground_ahead in relevance.shunned,
     )

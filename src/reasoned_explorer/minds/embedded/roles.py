@@ -10,6 +10,9 @@ from reasoned_explorer.minds.embedded.visionary import imagine_texts
 from reasoned_explorer.minds.ledger import CallRecord
 from reasoned_explorer.model import Assessment, Goal, Scene, Verdict
 
+#: So many entries of a scene's key say which view it belongs to: step, look, index.
+_VIEW_KEY = 3
+
 
 class EmbeddedMinds:
     """Evaluator, visionary and goal checker without a language model. They read a scene's text and key, nothing else.
@@ -75,7 +78,10 @@ class EmbeddedMinds:
         depth = scene.depth + 1
         if fault is not None:
             return [Scene("", (*scene.key, child), scene.waypoint, depth, fault) for child in range(count)]
-        texts = imagine_texts(scene.text, seed=self._context.seed, key=scene.key, count=count, senses=self._senses)
+        # All views of a mission are imagined on with the same draws: their scores then differ by what is seen in them,
+        # not by luck (common random numbers).
+        draws = (scene.depth, *scene.key[_VIEW_KEY:])
+        texts = imagine_texts(scene.text, seed=self._context.seed, key=draws, count=count, senses=self._senses)
         return [Scene(text, (*scene.key, child), scene.waypoint, depth) for child, text in enumerate(texts)]
 
     async def _charge(self, role: str, keys: Sequence[tuple[int, ...]], faults: Sequence[str | None]) -> None:
