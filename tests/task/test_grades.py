@@ -11,11 +11,15 @@ from reasoned_explorer.world.taxonomy import Ground
 ENTRY = '[[affordance]]\nname = "nap"\nasks = "a nap"\nphrases = ["nap"]\nrows = [{rows}]\n'
 
 
-def test_a_nap_is_better_in_the_shade():
-    rows = affordances()["nap"].rows
+def test_a_nap_can_be_had_on_a_bench_and_on_a_lawn_but_hardly_in_a_shelter():
+    grades = {row.class_name: row.grade for row in affordances()["nap"].rows}
+    assert grades == {"bench": PASS_GRADE, "lawn": PASS_GRADE, "shelter": 1}
+
+
+def test_a_picnic_is_better_in_the_shade():
+    rows = affordances()["picnic"].rows
     grades = {(row.class_name, bool(row.conditions)): row.grade for row in rows}
-    assert grades["bench", False] == 1
-    assert grades["bench", True] == PASS_GRADE
+    assert grades["lawn", False] == 1
     assert grades["lawn", True] == PASS_GRADE
 
 

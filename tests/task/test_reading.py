@@ -114,7 +114,7 @@ def test_an_abstraction_is_of_level_4_and_keeps_its_conditions():
 
 
 def test_a_thing_named_for_a_purpose_is_graded_by_the_purpose():
-    spec = read_goal("find me a bench where I can take a nap")
+    spec = read_goal("find me a bench where I can have a picnic")
     assert {item.class_name for item in spec.sought} == {"bench"}
     assert sorted(item.grade for item in spec.sought) == [1, 2]
 

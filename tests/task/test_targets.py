@@ -67,7 +67,7 @@ def test_at_a_cafe_is_beside_its_entrance():
 
 def test_a_lawn_satisfies_only_where_it_is_shady():
     atlas = world_of(("lawn", 25, 25, LAWN), ("tree", 15, 15))
-    (target,) = Grader(atlas).grade(read_goal("somewhere to take a nap"))
+    (target,) = Grader(atlas).grade(read_goal("somewhere to have a picnic"))
     assert (target.object_id, target.grade) == (0, 2)
     assert target.distance_m(15, 15) == 0.0
     # The far corner of the lawn is 35.4 m from the tree, whose crown reaches 3 m.
@@ -76,13 +76,13 @@ def test_a_lawn_satisfies_only_where_it_is_shady():
 
 def test_a_lawn_without_a_tree_is_grade_1_and_does_not_pass():
     atlas = world_of(("lawn", 25, 25, LAWN))
-    assert [t.grade for t in Grader(atlas).grade(read_goal("somewhere to take a nap"))] == [1]
-    assert passing(atlas, "somewhere to take a nap") == []
+    assert [t.grade for t in Grader(atlas).grade(read_goal("somewhere to have a picnic"))] == [1]
+    assert passing(atlas, "somewhere to have a picnic") == []
 
 
 def test_the_highest_grade_counts_whatever_the_order():
-    atlas = world_of(("bench", 50, 50), ("tree", 51, 50))
-    spec = read_goal("somewhere to take a nap")
+    atlas = world_of(("lawn", 25, 25, LAWN), ("tree", 25, 25))
+    spec = read_goal("somewhere to have a picnic")
     for sought in (spec.sought, spec.sought[::-1]):
         changed = type(spec)(spec.text, spec.level, sought)
         assert [t.grade for t in Grader(atlas).grade(changed)] == [2]

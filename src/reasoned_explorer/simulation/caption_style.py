@@ -5,6 +5,7 @@ spatial relations and the background. Nearness has fixed words, since readers of
 "in the foreground", "close" up to 10 m; "a little further on", "further away" up to 25 m; "in the distance" beyond.
 """
 
+import math
 import re
 from collections.abc import Sequence
 from functools import lru_cache
@@ -218,7 +219,7 @@ def _grouped(mentions: Sequence[Mention]) -> list[_Group]:
     groups = []
     for alike in gathered.values():
         first = max(alike, key=lambda mention: mention.prominence)
-        groups.append(_Group(first, len(alike), sum(mention.prominence for mention in alike)))
+        groups.append(_Group(first, len(alike), math.fsum(mention.prominence for mention in alike)))
     groups.sort(key=lambda group: (-group.prominence, group.first))
     return groups
 

@@ -14,6 +14,9 @@ FOUND_FROM = 0.5
 #: How sure one is that a thing is within reach, by how far away it is said to be. Captions that say nothing of distance
 #: are about what fills the picture, more often than not.
 _WITHIN_REACH = {NEAR: 0.95, None: 0.65, MIDDLE: 0.3, FAR: 0.08, BACKGROUND: 0.04}
+#: What a picture is of ("a grassy area", "grass lies ahead") is ground, and not yet the lawn that one would stop at: that
+#: is said to be close by, like any other thing.
+_UNDERFOOT = 0.5
 _SIDES = {-1: "to the left", 0: "ahead", 1: "to the right"}
 _DISTANCES = {NEAR: "close by", MIDDLE: "further on", FAR: "in the distance", BACKGROUND: "in the background"}
 _COLOURS = word_set("colours")
@@ -42,6 +45,10 @@ def _on_shunned(mention: Mention, relevance: Relevance) -> bool:
     )
 
 
+def _is_ground(mention: Mention) -> bool:
+    return mention.concept is not None and mention.concept.replace("_", " ") in ground_words()
+
+
 def confidence_in(mention: Mention, reading: SceneReading, relevance: Relevance) -> float:
     """Return how sure one is that a mentioned thing is the goal and within reach, in [0, 1]."""
     degree = relevance.degree(mention)
@@ -51,6 +58,8 @@ def confidence_in(mention: Mention, reading: SceneReading, relevance: Relevance)
     if relevance.targets or relevance.absent:
         support = conditions_support(mention, reading, relevance)
         confidence *= 0.25 + 0.75 * min(1.0, support / 0.9)
+    if mention.distance is None and _is_ground(mention):
+        confidence *= _UNDERFOOT
     if relevance.shunned and _on_shunned(mention, relevance):
         confidence *= 0.5
     return confidence

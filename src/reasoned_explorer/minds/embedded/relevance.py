@@ -243,14 +243,14 @@ def _context(degrees: Mapping[str, float], senses: Senses) -> tuple[dict[str, fl
     weights = {
         name: degree * degree * math.sqrt(density.get(name, 10.0)) for name, degree in degrees.items() if degree >= 0.5
     }
-    total = sum(weights.values())
+    total = math.fsum(weights.values())
     context: dict[str, float] = {}
     ground: dict[str, float] = {}
     if total == 0.0:
         return context, ground
     for given in concepts():
         lifts = [(weight, _pair_lift(given, wanted, senses)) for wanted, weight in weights.items()]
-        value = sum(weight * lift for weight, lift in lifts if lift is not None) / total
+        value = math.fsum(weight * lift for weight, lift in lifts if lift is not None) / total
         if value != 0.0:
             context[given] = value
     if senses.statistics is not None:
@@ -258,7 +258,7 @@ def _context(degrees: Mapping[str, float], senses: Senses) -> tuple[dict[str, fl
         for name in sorted(from_names):
             # 1 is also the answer for a class that was never counted.
             lifts_here = [(w, senses.statistics.ground_lift(name.lower(), wanted)) for wanted, w in weights.items()]
-            ground[name] = 0.5 * sum(weight * _log_lift(lift) for weight, lift in lifts_here) / total
+            ground[name] = 0.5 * math.fsum(weight * _log_lift(lift) for weight, lift in lifts_here) / total
     return context, ground
 
 
