@@ -97,3 +97,15 @@ def test_an_empty_scene_is_a_fault_and_never_found():
     assert not verdict.found
     with pytest.raises(GoalError):
         verdict_on("hello", STREET, WORDS_ONLY)
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("The picture shows a grassy area. Grass lies straight ahead.", False),  # ground, not a place to stop at
+        ("In the foreground, close to the viewer, there is a lawn.", True),
+        ("A lawn can be seen in the distance.", False),
+    ],
+)
+def test_ground_underfoot_is_no_evidence_of_a_lawn(text, found):
+    assert _found("Find me somewhere to take a nap", text) is found

@@ -44,7 +44,7 @@ class ExplorerSettings:
     known_radius_m: float = 0.0
     merge_radius_m: float = 1.5
     revisit_radius_m: float = 3.0
-    look_back_after_stop: bool = True
+    look_back_after_stop: bool = False
     max_faults_in_a_row: int = 3
 
     def __post_init__(self) -> None:

@@ -14,8 +14,8 @@ FOUND_FROM = 0.5
 #: How sure one is that a thing is within reach, by how far away it is said to be. Captions that say nothing of distance
 #: are about what fills the picture, more often than not.
 _WITHIN_REACH = {NEAR: 0.95, None: 0.65, MIDDLE: 0.3, FAR: 0.08, BACKGROUND: 0.04}
-#: What a picture is of ("a grassy area", "grass lies ahead") is ground, and not yet the lawn that one would stop at: that
-#: is said to be close by, like any other thing.
+#: What a picture is of ("a grassy area", "grass lies ahead") is ground, and not yet the lawn that one would stop at:
+#: that is said to be close by, like any other thing.
 _UNDERFOOT = 0.5
 _SIDES = {-1: "to the left", 0: "ahead", 1: "to the right"}
 _DISTANCES = {NEAR: "close by", MIDDLE: "further on", FAR: "in the distance", BACKGROUND: "in the background"}
