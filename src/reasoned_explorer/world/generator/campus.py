@@ -147,17 +147,21 @@ def _features(sketch: Sketch, rng: Generator, inner: Polygon, quads: list[Polygo
     features: list[Polygon] = []
     rooms = (("plaza", 15.0), ("carpark", 21.0), ("pitch", 24.0), ("pond", 19.0), ("carpark", 18.0), ("wood", 17.0))
     scale = max(1, round(inner.area / 110_000.0))
+    insides = {radius: shapely.buffer(inner, -radius - 2.0) for _, radius in rooms}
     for use, radius in rooms * scale:
-        spots = spread(rng, shapely.buffer(inner, -radius - 2.0), 17.0, jitter=0.5)
+        spots = spread(rng, insides[radius], 17.0, jitter=0.5)
         if not len(spots):
             continue
         free = np.ones(len(spots), bool)
         free[shapely.STRtree(taken).query(shapely.points(spots), predicate="dwithin", distance=radius)[0]] = False
-        edge = shapely.distance(shapely.points(spots), inner.exterior)
         if not free.any():
             continue
         # Car parks lie by the road, the plaza in the middle.
-        order = np.argsort(edge if use == "carpark" else -edge if use == "plaza" else rng.random(len(spots)))
+        towards_edge = {"carpark": 1.0, "plaza": -1.0}.get(use)
+        if towards_edge is None:
+            order = np.argsort(rng.random(len(spots)))
+        else:
+            order = np.argsort(towards_edge * shapely.distance(shapely.points(spots), inner.exterior))
         index = next(index for index in order.tolist() if free[index])
         x, y = (float(value) for value in spots[index])
         mesh = shapely.points(x, y).buffer(radius, quad_segs=6)
@@ -276,13 +280,14 @@ def _paths(
         ends = points[pairs[left]]
         curves = bows(ends[:, 0], ends[:, 1], sag[left])
         lines = shapely.linestrings(curves)
-        # Where a path begins and ends there is a wall near, the one with the door.
-        free = shapely.difference(lines, shapely.buffer(shapely.multipoints(ends), 4.2, quad_segs=4))
         inside = shapely.contains(room, lines)
         inside[~inside] = shapely.length(shapely.intersection(lines[~inside], room)) > 0.9 * shapely.length(
             lines[~inside]
         )
-        good = inside & ~shapely.intersects(blocked, free)
+        # Where a path begins and ends there is a wall near, the one with the door.
+        doors = shapely.buffer(shapely.multipoints(ends[inside]), 4.2, quad_segs=4)
+        good = inside.copy()
+        good[inside] = ~shapely.intersects(blocked, shapely.difference(lines[inside], doors))
         for curve in curves[good]:
             sketch.pave(curve, 2.4, Ground.PATH)
         left = left[~good]

@@ -37,10 +37,10 @@ def neighbours(points: Points, *, longest_m: float) -> list[tuple[int, int]]:
     reach = np.hypot(*(points[first] - points[second]).T)
     short = reach < longest_m
     first, second, middle, reach = first[short], second[short], middle[short], reach[short]
-    distance = np.hypot(middle[:, None, 0] - points[None, :, 0], middle[:, None, 1] - points[None, :, 1])
+    squared = (middle[:, None, 0] - points[None, :, 0]) ** 2 + (middle[:, None, 1] - points[None, :, 1]) ** 2
     rows = np.arange(len(first))
-    distance[rows, first] = distance[rows, second] = math.inf
-    keep = distance.min(axis=1, initial=math.inf) > reach / 2 if len(first) else np.zeros(0, bool)
+    squared[rows, first] = squared[rows, second] = math.inf
+    keep = squared.min(axis=1, initial=math.inf) > (reach / 2) ** 2 if len(first) else np.zeros(0, bool)
     return list(zip(first[keep].tolist(), second[keep].tolist(), strict=True))
 
 
