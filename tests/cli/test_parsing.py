@@ -23,10 +23,10 @@ def test_a_start_in_a_generated_world_is_in_metres() -> None:
 
 
 def test_a_start_in_a_real_place_is_on_earth() -> None:
-    start = parse_start("48.1383, 11.5755, -90", MUNICH)
+    start = parse_start("48.1380, 11.5756, -90", MUNICH)
     assert start is not None
-    assert start.x_m == pytest.approx(0.0, abs=0.01)
-    assert start.y_m == pytest.approx(100.1, abs=0.2)
+    assert start.x_m == pytest.approx(7.4, abs=0.1)
+    assert start.y_m == pytest.approx(66.7, abs=0.2)
     assert start.heading_rad == pytest.approx(1.5 * math.pi)
 
 
@@ -40,6 +40,8 @@ def test_all_faults_of_a_start_are_told_at_once() -> None:
     with pytest.raises(StartError) as raised:
         parse_start("nan,north", HERE)
     assert len(raised.value.faults) == 2
+    with pytest.raises(StartError, match=r"is off courtyard; expected latitude 48\.1374 to 48\.1381"):
+        parse_start("48.2,11.57,0", MUNICH)
     with pytest.raises(StartError, match="latitude comes first"):
         parse_start("111.57,48.13,0", MUNICH)
 

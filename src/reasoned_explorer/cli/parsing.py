@@ -33,7 +33,7 @@ def parse_start(text: str | None, world: World) -> Pose | None:
         world: Whose frame it is.
 
     Raises:
-        StartError: If the text is not two or three finite numbers, or no such place is on earth.
+        StartError: If the text is not two or three finite numbers, no such place is on earth, or it is off the map.
     """
     if text is None:
         return None
@@ -50,8 +50,21 @@ def parse_start(text: str | None, world: World) -> Pose | None:
     if world.origin is not None:
         east_m, north_m = world.origin.enu_from_geodetic_m(numbers[0], numbers[1])
         x_m, y_m = float(east_m), float(north_m)
+        if not world.bounds.contains(x_m, y_m):
+            what = f"{numbers[0]:g}, {numbers[1]:g} is off {world.name}"
+            raise StartError("start", [Fault(what, _extent_deg(world), "leave --start out for a random one")])
     heading_deg = numbers[2] if len(numbers) == 3 else 0.0
     return Pose(x_m, y_m, 0.0, normalise_heading_rad(math.radians(heading_deg)))
+
+
+def _extent_deg(world: World) -> str:
+    """Return in words which latitudes and longitudes a world covers."""
+    bounds, origin = world.bounds, world.origin
+    if origin is None:
+        return "a place in the world"
+    south_deg, west_deg = origin.geodetic_from_enu_deg(bounds.min_x_m, bounds.min_y_m)
+    north_deg, east_deg = origin.geodetic_from_enu_deg(bounds.max_x_m, bounds.max_y_m)
+    return f"latitude {south_deg:.4f} to {north_deg:.4f}, longitude {west_deg:.4f} to {east_deg:.4f}"
 
 
 def parse_settings(pairs: Sequence[str]) -> dict[str, Any]:
