@@ -1,6 +1,5 @@
 """``rex run``."""
 
-import gc
 import math
 import re
 from dataclasses import dataclass
@@ -101,9 +100,6 @@ def run_from_options(options: RunOptions) -> None:
             for line in progress.lines(step):
                 console.print(line, markup=False, soft_wrap=True)
 
-    # The world and the mission stay to the end: the garbage collector need not look through them again and again.
-    gc.collect()
-    gc.freeze()
     result = mission.run(folder=folder, on_step=on_step)
     for line in summary_lines(result.record):
         console.print(line, markup=False, soft_wrap=True)

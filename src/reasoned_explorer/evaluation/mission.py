@@ -1,6 +1,8 @@
 """One mission from a sentence to its score: puts the rooms together, runs the agent, has the judge look at it."""
 
-from collections.abc import Callable, Mapping
+import gc
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from functools import cache
 from importlib.metadata import version
@@ -184,7 +186,8 @@ class Mission:
 
         self.explorer.on_step = keep
         try:
-            exploration = self.clock.run(self.explorer.run(self.goal))
+            with _rare_collections():
+                exploration = self.clock.run(self.explorer.run(self.goal))
         except KeyboardInterrupt:
             stopped = self._exploration_so_far(steps)
             summary, _ = self._summary(stopped, steps)
@@ -357,6 +360,17 @@ class Mission:
 @cache
 def _versions() -> tuple[tuple[str, str], ...]:
     return tuple((name, version(name)) for name in ("reasoned-explorer", "numpy", "numba", "shapely"))
+
+
+@contextmanager
+def _rare_collections() -> Iterator[None]:
+    """Look for garbage cycles rarely: a mission makes few, and looking goes through the whole world each time."""
+    before = gc.get_threshold()
+    gc.set_threshold(50_000, 50, 1_000)
+    try:
+        yield
+    finally:
+        gc.set_threshold(*before)
 
 
 def _finite(value: float | None) -> float | None:
