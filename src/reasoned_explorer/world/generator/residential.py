@@ -5,6 +5,7 @@ import math
 import numpy as np
 import shapely
 from numpy.random import Generator
+from numpy.typing import NDArray
 from shapely import LineString, Polygon
 
 from reasoned_explorer.world.generator.blocks import Fabric, blocks_between, garden_block, height_of, landmark_block
@@ -118,9 +119,7 @@ def _houses(sketch: Sketch, rng: Generator, block: Polygon, houses: list[Polygon
     mine: list[Polygon] = []
     room = shapely.buffer(block, -2.5)
     shapely.prepare(room)
-    for index in range(len(at)):
-        if not sketch.box.contains(shapely.points(at[index])) or _on_border(sketch, at[index]):
-            continue
+    for index in np.flatnonzero(_off_border(sketch, at)).tolist():
         kind = "rect" if terraced else str(rng.choice(["rect", "rect", "l", "l", "t"]))
         width = pitch + 0.1 if terraced else float(rng.uniform(9.0, min(14.0, pitch - 4.0)))
         depth = float(rng.uniform(8.5, 11.0))
@@ -128,9 +127,10 @@ def _houses(sketch: Sketch, rng: Generator, block: Polygon, houses: list[Polygon
         x, y = at[index] + normals[index] * back
         heading = float(heading_of(-normals[index : index + 1])[0])
         area = placed(footprint(kind, width, depth, 5.5), float(x), float(y), heading)
-        grown = area if terraced else area.buffer(2.4, quad_segs=2)
-        core = grown.buffer(-0.4) if terraced else grown
-        if not room.contains(area) or any(core.intersects(other) for other in mine):
+        if not room.contains(area):
+            continue
+        core = area.buffer(-0.4) if terraced else area.buffer(2.4, quad_segs=2)
+        if mine and shapely.intersects(core, mine).any():
             continue
         mine.append(area)
         doorstep = at[index] + normals[index] * (back - depth / 2)
@@ -143,8 +143,11 @@ def _houses(sketch: Sketch, rng: Generator, block: Polygon, houses: list[Polygon
     houses.extend(mine)
 
 
-def _on_border(sketch: Sketch, point: Points) -> bool:
-    return float(sketch.box.exterior.distance(shapely.points(point))) < 1.5
+def _off_border(sketch: Sketch, points: Points) -> NDArray[np.bool_]:
+    """Return which points lie in the world, 1.5 m or more from its border."""
+    low, high = np.reshape(sketch.box.bounds, (2, 2))
+    inside: NDArray[np.bool_] = np.all((points - low >= 1.5) & (high - points >= 1.5), axis=1)
+    return inside
 
 
 def _drive(sketch: Sketch, rng: Generator, frame: tuple[Points, Points, Points], width: float, back: float) -> None:
