@@ -27,6 +27,7 @@ from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.model import GoalError, StartError
 from reasoned_explorer.model.record import MissionEnd
 from reasoned_explorer.world.atlas import Atlas
+from reasoned_explorer.world.generator import DISTRICTS
 from reasoned_explorer.world.opening import open_world
 
 PLACES = Path(__file__).resolve().parents[1] / ".." / "shared" / "osm"
@@ -140,7 +141,7 @@ def grown(what: str, value: object, atlas: Atlas, settings: MissionSettings, rep
 def worlds(repeats: int, places: Path) -> None:
     headline("Worlds")
     open_world("town:7@200")
-    for name in ("town", "downtown", "residential"):
+    for name in DISTRICTS:
         spent_s = cpu_s(lambda name=name: open_world(f"{name}:7@1000"), repeats)  # type: ignore[misc]
         row(f"generate {name}, 1 km²", f"{spent_s:.2f} s", "<= 1 s")
     for file in sorted(places.glob("*.osm.pbf")):

@@ -114,8 +114,8 @@ def perimeter_block(sketch: Sketch, rng: Generator, block: Polygon, fabric: Fabr
     sketch.lay(Ground.YARD, court, "courtyard")
     sketch.lay(Ground.PAVEMENT, rim)
     choice = rng.random()
-    inner = shapely.buffer(court, -4.0)
-    for part in polygons_of(inner):
+    inner = polygons_of(shapely.buffer(court, -4.0)) if choice < 0.75 else []
+    for part in inner:
         if choice < 0.45 and part.area > 120.0:
             sketch.lay(Ground.GARDEN, shapely.buffer(shapely.buffer(part, -3.0), 3.0), "garden")
         elif choice < 0.65 and part.area > 500.0:

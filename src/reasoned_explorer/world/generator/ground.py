@@ -8,10 +8,11 @@ from numpy.typing import NDArray
 from shapely import LineString, Polygon
 
 from reasoned_explorer.world.generator.shapes import Points
+from reasoned_explorer.world.raster import Canvas
 from reasoned_explorer.world.taxonomy import Ground
 from reasoned_explorer.world.world import Way
 
-Codes = NDArray[np.int8]
+Codes = NDArray[np.uint8]
 _CELL_M = 0.5
 #: Cells of the coarse picture that `GroundPlan.spread_out` returns.
 COARSE_M = 5.0
@@ -46,7 +47,9 @@ class GroundPlan:
         #: South-west corner, metres.
         self.origin = (float(box.bounds[0]), float(box.bounds[1]))
         self._cells = round((box.bounds[2] - box.bounds[0]) / _CELL_M)
-        self._picture = _painted([*areas, *beds, *walls], codes, self.origin, self._cells)
+        self._picture = np.zeros((self._cells, self._cells), np.uint8)
+        canvas = Canvas(self._picture, *self.origin, _CELL_M)
+        canvas.fill(_rings_of([*areas, *beds, *walls]), [int(code) for code in codes])
 
     def at(self, points: Points) -> Codes:
         """Return the ground codes at points, shape (n,), true to half a cell; `Ground.UNKNOWN` outside the world."""
@@ -55,7 +58,7 @@ class GroundPlan:
         last = self._cells - 1
         inside = (rows >= 0) & (columns >= 0) & (rows <= last) & (columns <= last)
         codes = self._picture[np.clip(rows, 0, last), np.clip(columns, 0, last)]
-        return np.where(inside, codes, np.int8(Ground.UNKNOWN))
+        return np.where(inside, codes, np.uint8(Ground.UNKNOWN))
 
     def by_a_wall(self, points: Points, reach_m: float) -> NDArray[np.bool_]:
         """Return which points have a building within a short reach (metres), in one of eight directions."""
@@ -83,32 +86,15 @@ class GroundPlan:
         return near
 
 
-def _painted(areas: list[shapely.Geometry], codes: list[Ground], origin: tuple[float, float], cells: int) -> Codes:
-    """Paint polygons one over the other (even-odd fill at the middles of cells), shape (cells, cells)."""
-    rings, area_of_ring = shapely.get_rings(np.array(areas, dtype=object), return_index=True)
-    # `get_rings` looks at one level only: multi-part areas are taken apart first.
-    if any(not isinstance(area, Polygon) for area in areas):
-        parts, area_of_part = shapely.get_parts(np.array(areas, dtype=object), return_index=True)
-        rings, part_of_ring = shapely.get_rings(parts, return_index=True)
-        area_of_ring = area_of_part[part_of_ring]
-    corners, ring = shapely.get_coordinates(rings, return_index=True)
-    corners = (corners - origin) / _CELL_M
-    joined = np.flatnonzero(ring[1:] == ring[:-1])
-    (x0, y0), (x1, y1) = corners[joined].T, corners[joined + 1].T
-    first = np.maximum(np.ceil(np.minimum(y0, y1) - 0.5), 0).astype(int)
-    beyond = np.minimum(np.ceil(np.maximum(y0, y1) - 0.5), cells).astype(int)
-    count = np.maximum(beyond - first, 0)
-    edge = np.repeat(np.arange(len(joined)), count)
-    row = first[edge] + np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
-    x = x0[edge] + (row + 0.5 - y0[edge]) * (x1[edge] - x0[edge]) / (y1[edge] - y0[edge])
-    area = area_of_ring[ring[joined]][edge]
-    order = np.argsort((area * cells + row) * 1.0 * (4 * cells) + np.clip(x, -cells, 2 * cells) + cells, kind="stable")
-    columns = np.clip(np.ceil(x[order] - 0.5), 0, cells).astype(int)
-    row, area = row[order][::2], area[order][::2]
-    starts, ends = row * cells + columns[::2], row * cells + columns[1::2]
-    filled = ends > starts
-    picture = np.zeros(cells * cells, np.int8)
-    paint = np.array([int(code) for code in codes], np.int8)[area]
-    for start, end, code in zip(starts[filled].tolist(), ends[filled].tolist(), paint[filled].tolist(), strict=True):
-        picture[start:end] = code
-    return picture.reshape(cells, cells)
+def _rings_of(areas: Sequence[shapely.Geometry]) -> list[list[Points]]:
+    """Return the coordinates of all rings of each area, those of its parts one after the other."""
+    parts, area_of_part = shapely.get_parts(np.array(areas, dtype=object), return_index=True)
+    rings, part_of_ring = shapely.get_rings(parts, return_index=True)
+    corners, ring_of_corner = shapely.get_coordinates(rings, return_index=True)
+    found: list[list[Points]] = [[] for _ in areas]
+    ends = np.searchsorted(ring_of_corner, np.arange(len(rings)), side="right").tolist()
+    start = 0
+    for end, area in zip(ends, area_of_part[part_of_ring].tolist(), strict=True):
+        found[area].append(corners[start:end])
+        start = end
+    return found
