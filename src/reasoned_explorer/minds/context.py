@@ -37,9 +37,11 @@ class Minds:
         evaluator: Scores scenes.
         visionary: Imagines what lies beyond.
         checker: Notices the goal.
+        seed: Of the mission; what a planner draws is keyed by it.
     """
 
     label: str
     evaluator: Evaluator
     visionary: Visionary
     checker: GoalChecker
+    seed: int = 0

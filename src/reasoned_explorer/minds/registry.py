@@ -1,5 +1,7 @@
 """Minds by name, and how roles of different names are put together."""
 
+from dataclasses import replace
+
 from reasoned_explorer.minds.context import MindContext, Minds
 from reasoned_explorer.registry import Entry, Registry
 
@@ -50,11 +52,12 @@ def make_minds(
         if name not in made:
             made[name] = MINDS.load(name)(context)
     if len(made) == 1:
-        return made[names["evaluator"]]
+        return replace(made[names["evaluator"]], seed=context.seed)
     label = ", ".join(f"{role}: {made[name].label}" for role, name in names.items())
     return Minds(
         label=label,
         evaluator=made[names["evaluator"]].evaluator,
         visionary=made[names["visionary"]].visionary,
         checker=made[names["checker"]].checker,
+        seed=context.seed,
     )
