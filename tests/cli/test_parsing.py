@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reasoned_explorer.cli.parsing import parse_bbox, parse_settings, parse_start
+from reasoned_explorer.cli.parsing import parse_bbox, parse_start
 from reasoned_explorer.geometry import GeoOrigin
-from reasoned_explorer.model import ReasonedExplorerError, SettingsError, StartError, WorldError
+from reasoned_explorer.model import ReasonedExplorerError, StartError, WorldError
 from tests.world.worlds import courtyard
 
 HERE = courtyard()
@@ -52,19 +52,8 @@ def test_a_bounding_box_is_four_numbers(text: str) -> None:
         parse_bbox(text)
 
 
-def test_settings_are_json_or_text() -> None:
-    given_pairs = ["depth=1", "restart=true", "depth-weight=0.5", "name=x y"]
-    assert parse_settings(given_pairs) == {"depth": 1, "restart": True, "depth_weight": 0.5, "name": "x y"}
-
-
-def test_settings_that_make_no_sense_are_told_at_once() -> None:
-    with pytest.raises(SettingsError) as raised:
-        parse_settings(["depth", "=1", "restart=true", "restart=false"])
-    assert len(raised.value.faults) == 3
-
-
 @given(st.text(max_size=40))
 def test_whatever_is_typed_is_understood_or_refused(text: str) -> None:
-    for parse in (lambda: parse_start(text, HERE), lambda: parse_bbox(text), lambda: parse_settings([text])):
+    for parse in (lambda: parse_start(text, HERE), lambda: parse_bbox(text)):
         with suppress(ReasonedExplorerError):
             parse()

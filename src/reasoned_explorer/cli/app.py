@@ -7,6 +7,7 @@ import typer
 
 from reasoned_explorer import __version__
 from reasoned_explorer.cli.answers import answering
+from reasoned_explorer.cli.bench_app import add_commands
 from reasoned_explorer.cli.worlds_app import worlds_app
 
 app = typer.Typer(
@@ -17,6 +18,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.add_typer(worlds_app, name="worlds")
+add_commands(app)
 
 
 def _version(*, value: bool) -> None:

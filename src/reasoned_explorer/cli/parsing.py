@@ -1,9 +1,6 @@
 """From what people type to values; every fault of a text is told at once."""
 
-import json
 import math
-from collections.abc import Sequence
-from typing import Any
 
 from reasoned_explorer.geometry import Pose, normalise_heading_rad
 from reasoned_explorer.model import Fault, SettingsError, StartError, WorldError
@@ -57,6 +54,19 @@ def parse_start(text: str | None, world: World) -> Pose | None:
     return Pose(x_m, y_m, 0.0, normalise_heading_rad(math.radians(heading_deg)))
 
 
+def parse_levels(text: str) -> tuple[int, ...]:
+    """Return the levels that a person means, sorted, each once; none for an empty text.
+
+    Raises:
+        SettingsError: If something is no level.
+    """
+    parts = [part.strip() for part in text.split(",")] if text.strip() else []
+    faults = [Fault(f"level {part!r}", "1, 2, 3 or 4") for part in parts if part not in {"1", "2", "3", "4"}]
+    if faults:
+        raise SettingsError("--levels", faults)
+    return tuple(sorted({int(part) for part in parts}))
+
+
 def _extent_deg(world: World) -> str:
     """Return in words which latitudes and longitudes a world covers."""
     bounds, origin = world.bounds, world.origin
@@ -65,35 +75,6 @@ def _extent_deg(world: World) -> str:
     south_deg, west_deg = origin.geodetic_from_enu_deg(bounds.min_x_m, bounds.min_y_m)
     north_deg, east_deg = origin.geodetic_from_enu_deg(bounds.max_x_m, bounds.max_y_m)
     return f"latitude {south_deg:.4f} to {north_deg:.4f}, longitude {west_deg:.4f} to {east_deg:.4f}"
-
-
-def parse_settings(pairs: Sequence[str]) -> dict[str, Any]:
-    """Return ``{"depth": 1}`` for ``["depth=1"]``; values are JSON, or text where they are not.
-
-    Raises:
-        SettingsError: If a pair has no equals sign or no name, or a name is given twice.
-    """
-    settings: dict[str, Any] = {}
-    faults = []
-    for pair in pairs:
-        key, sign, value = pair.partition("=")
-        name = key.strip().replace("-", "_")
-        if not sign or not name:
-            faults.append(Fault(f"{pair!r}", "name=value, e.g. depth=1"))
-        elif name in settings:
-            faults.append(Fault(f"{name!r} is given twice", "each setting once"))
-        else:
-            settings[name] = _value(value)
-    if faults:
-        raise SettingsError("--set", faults)
-    return settings
-
-
-def _value(text: str) -> Any:
-    try:
-        return json.loads(text)
-    except ValueError:
-        return text
 
 
 def _numbers(text: str, count: int) -> tuple[list[float], list[Fault]]:

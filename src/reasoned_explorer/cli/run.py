@@ -9,12 +9,13 @@ import typer
 from rich.console import Console
 
 from reasoned_explorer.cli.answers import ExitCode
-from reasoned_explorer.cli.parsing import parse_bbox, parse_settings, parse_start
+from reasoned_explorer.cli.parsing import parse_bbox, parse_start
 from reasoned_explorer.cli.progress import Progress, header_lines, summary_lines
 from reasoned_explorer.evaluation.mission import Mission, MissionResult, MissionSettings
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.model import Fault, RecordError
 from reasoned_explorer.model.record import MissionEnd, StepRecord
+from reasoned_explorer.planning.setting_pairs import parse_planner_settings
 from reasoned_explorer.world.files import save_world
 from reasoned_explorer.world.opening import KEPT_SUFFIX, open_world
 
@@ -59,7 +60,7 @@ class RunOptions:
         """
         return MissionSettings(
             planner=self.planner,
-            planner_settings=parse_settings(self.planner_settings),
+            planner_settings=parse_planner_settings(self.planner_settings),
             minds=self.minds,
             visionary=self.visionary,
             evaluator=self.evaluator,

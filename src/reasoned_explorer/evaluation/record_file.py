@@ -89,10 +89,33 @@ def read_record(folder: Path) -> EpisodeRecord:
     """
     path = folder / RECORD_NAME if folder.is_dir() else folder
     try:
-        lines = path.read_bytes().split(b"\n")
+        data = path.read_bytes()
     except OSError as error:
         fault = Fault(f"{path}: {error.strerror}", "the folder of a run", "rex run leaves one")
         raise RecordError("record", [fault]) from error
+    return parse_record(data, path)
+
+
+def record_bytes(record: EpisodeRecord) -> bytes:
+    """Return a record as `RecordWriter` writes it, to the byte."""
+    lines = [b'{"header":' + _HEADER.dump_json(record.header) + b"}\n"]
+    lines += [b'{"step":' + _STEP.dump_json(step) + b"}\n" for step in record.steps]
+    if record.summary is not None:
+        lines.append(b'{"summary":' + _SUMMARY.dump_json(record.summary) + b"}\n")
+    return b"".join(lines)
+
+
+def parse_record(data: bytes, path: Path) -> EpisodeRecord:
+    """Return the record that a file holds.
+
+    Args:
+        data: What is in the file.
+        path: Where it lies, for messages.
+
+    Raises:
+        RecordError: As `read_record`.
+    """
+    lines = data.split(b"\n")
     # After a whole last line comes an empty rest; anything else was cut off.
     whole = lines[:-1]
     if not whole:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -179,21 +179,62 @@ def sample_episodes(
         raise SettingsError(
             "sampling of episodes", [Fault(f"count {count}, levels {tuple(levels)}", "at least one of each")]
         )
-    dealer = _Dealer(atlas, traveller, seed, chosen)
+    dealer = EpisodeDealer(atlas, traveller, seed=seed, settings=chosen)
     return tuple(dealer.deal(levels[place % len(levels)]) for place in range(count))
 
 
-class _Dealer:
-    """Deals episodes of one world: goals of each level from a shuffled deck, round after round."""
+@dataclass(slots=True)
+class _Known:
+    """What dealers of one world share: places to declare blindly from, judges, and how often blindness succeeds."""
 
-    def __init__(self, atlas: Atlas, traveller: Traveller, seed: int, settings: SamplingSettings) -> None:
-        self._atlas, self._traveller, self._seed, self._settings = atlas, traveller, seed, settings
-        self._grader = Grader(atlas)
+    grader: Grader
+    places: list[tuple[float, float]]
+    judges: dict[tuple[int, str], Judge] = field(default_factory=dict)
+    blind: dict[tuple[int, str], float] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, atlas: Atlas, traveller: Traveller, seed: int) -> "_Known":
         places = free_places(atlas, traveller=traveller, count=_BLIND_PLACES, seed=key_of(seed, "blind"))
-        self._places = [(float(x), float(y)) for x, y in places]
+        return cls(Grader(atlas), [(float(x), float(y)) for x, y in places])
+
+
+class EpisodeDealer:
+    """Deals episodes of one world: goals of each level from a shuffled deck, round after round.
+
+    Args:
+        atlas: The world.
+        traveller: Who goes.
+        seed: Of every draw.
+        settings: How episodes are drawn.
+        name: What the world is called in the episodes; its own name by default.
+        share: Another dealer of the same world, traveller and success radius, to share judges with.
+    """
+
+    def __init__(
+        self,
+        atlas: Atlas,
+        traveller: Traveller,
+        *,
+        seed: int,
+        settings: SamplingSettings | None = None,
+        name: str | None = None,
+        share: "EpisodeDealer | None" = None,
+    ) -> None:
+        self._atlas, self._traveller, self._seed, self._settings = (
+            atlas,
+            traveller,
+            seed,
+            settings or SamplingSettings(),
+        )
+        self._name = name or atlas.world.name
         self._decks: dict[int, list[CatalogueGoal]] = {}
         self._rounds: dict[tuple[int, str], int] = {}
-        self._judges: dict[tuple[int, str], Judge] = {}
+        self._known: _Known = share._known if share is not None else _Known.of(atlas, traveller, seed)
+
+    def blind_rate(self, episode: Episode) -> float:
+        """Return how often a declaration at a random spot of the world would satisfy a dealt episode's goal."""
+        level, name = episode.id.split("/")[-3:-1]
+        return self._known.blind[int(level[1:]), name]
 
     def deal(self, level: int) -> Episode:
         """Return the next episode of a level; goals that cannot be posed leave the deck.
@@ -222,19 +263,21 @@ class _Dealer:
         self._rounds[key] = lap + 1
         seed = key_of(self._seed, "episode", goal.level, goal.name, lap)
         spec = goal.spec(int(uniform(seed, "paraphrase") * len(goal.sentences)))
-        if key not in self._judges:
-            judge = _judge(self._atlas, spec, self._traveller, self._settings, self._grader)
-            if judge.blind_success_rate(self._places) > self._settings.max_blind_rate:
+        if key not in self._known.judges:
+            judge = _judge(self._atlas, spec, self._traveller, self._settings, self._known.grader)
+            if key not in self._known.blind:
+                self._known.blind[key] = judge.blind_success_rate(self._known.places)
+            if self._known.blind[key] > self._settings.max_blind_rate:
                 raise StartError(
                     "episode", [Fault(f"{spec.text!r} is satisfied everywhere", "a goal to be looked for")]
                 )
-            self._judges[key] = judge
+            self._known.judges[key] = judge
         start, length_m = sample_start(
-            self._atlas, spec, self._traveller, seed=seed, settings=self._settings, judge=self._judges[key]
+            self._atlas, spec, self._traveller, seed=seed, settings=self._settings, judge=self._known.judges[key]
         )
         return Episode(
-            id=f"{self._atlas.world.name}/L{goal.level}/{goal.name}/{lap}",
-            world=self._atlas.world.name,
+            id=f"{self._name}/L{goal.level}/{goal.name}/{lap}",
+            world=self._name,
             spec=spec,
             start=start,
             seed=seed,

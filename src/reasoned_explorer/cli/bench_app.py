@@ -1,0 +1,128 @@
+"""The commands of many missions: ``bench``, ``compare``, ``export``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from reasoned_explorer.cli.answers import answering
+
+Run = Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a run of rex bench.")]
+
+
+def add_commands(app: typer.Typer) -> None:
+    """Add the commands to ``rex``."""
+    app.command()(bench)
+    app.command()(compare)
+    app.command("export")(export_)
+
+
+@answering
+def bench(
+    *,
+    split: Annotated[str, typer.Option(help="mini (about a minute) or full (at least 400 missions).")] = "mini",
+    planners: Annotated[
+        str,
+        typer.Option(
+            help="Names with commas, e.g. llm-rrt:depth=1,follow-paths+perfect-halt; or a group: "
+            "default, planners, bounds, controls, halts, all."
+        ),
+    ] = "default",
+    worlds: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--world",
+            "--worlds",
+            help="Make a split of these worlds instead; may be repeated. Real places "
+            "are cut into neighbourhoods of about 1 km².",
+        ),
+    ] = None,
+    bbox: Annotated[str | None, typer.Option(help="Crop OpenStreetMap files: lon0,lat0,lon1,lat1 (degrees).")] = None,
+    per_cell: Annotated[
+        int | None, typer.Option(help="Episodes of each level and distance in each place (there are 12 such cells).")
+    ] = None,
+    split_seed: Annotated[int | None, typer.Option(min=0, help="Deal other episodes.")] = None,
+    levels: Annotated[str, typer.Option(help="Only these levels, with commas.")] = "",
+    seeds: Annotated[
+        str, typer.Option(help="Run each episode with each of these; other seeds make other captions and draws.")
+    ] = "0",
+    minds: Annotated[str, typer.Option(help="Who imagines, scores and checks; see rex names.")] = "embedded",
+    visionary: Annotated[str | None, typer.Option(help="Who imagines, if not --minds.")] = None,
+    evaluator: Annotated[str | None, typer.Option(help="Who scores, if not --minds.")] = None,
+    checker: Annotated[str | None, typer.Option(help="Who notices the goal, if not --minds.")] = None,
+    captioner: Annotated[str, typer.Option(help="Who says what is seen; see rex names.")] = "noisy",
+    vehicle: Annotated[str, typer.Option(help="Vehicle profiles with commas; each has a table of its own.")] = "drone",
+    latency: Annotated[str, typer.Option(help="How long modelled calls take; see rex names.")] = "gpt-2023",
+    clock: Annotated[str, typer.Option(help="virtual, mixed or real time.")] = "virtual",
+    t_max: Annotated[float, typer.Option(help="Mission time above which it is failed, minutes.")] = 30.0,
+    radius: Annotated[float, typer.Option(help="Success radius R of the judge, metres.")] = 15.0,
+    workers: Annotated[
+        int | None, typer.Option(help="Processes on this machine; as many as processors by default.")
+    ] = None,
+    ray: Annotated[
+        str | None, typer.Option(help="Run on a Ray cluster: auto, or its address. Needs reasoned-explorer[ray].")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder of the run; runs/bench-… by default.")] = None,
+    resume: Annotated[
+        Path | None, typer.Option(metavar="RUN", help="Go on with a run that was stopped; it knows its own settings.")
+    ] = None,
+    traces: Annotated[bool, typer.Option("--traces/--no-traces", help="Keep the record of each mission.")] = True,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the tables.")] = False,
+) -> None:
+    """Run planners over the missions of a split, and print one table.
+
+    Exit code 0: all missions ran. 2: bad input. 3: the disk is full. What is finished is kept: go on with --resume.
+    """
+    from reasoned_explorer.cli.bench import BenchOptions, run_bench_from_options
+    from reasoned_explorer.cli.parsing import parse_levels
+
+    run_bench_from_options(
+        BenchOptions(
+            split=split,
+            planners=planners,
+            worlds=tuple(worlds or ()),
+            bbox=bbox,
+            per_cell=per_cell,
+            split_seed=split_seed,
+            levels=parse_levels(levels),
+            seeds=seeds,
+            minds=minds,
+            visionary=visionary,
+            evaluator=evaluator,
+            checker=checker,
+            captioner=captioner,
+            vehicle=vehicle,
+            latency=latency,
+            clock=clock,
+            t_max_min=t_max,
+            radius_m=radius,
+            workers=workers,
+            ray=ray,
+            out=out,
+            resume=resume,
+            traces=traces,
+            quiet=quiet,
+        )
+    )
+
+
+@answering
+def compare(
+    first: Annotated[str, typer.Argument(metavar="A", help="A run, or RUN::PLANNER.")],
+    second: Annotated[str, typer.Argument(metavar="B", help="Another run, or RUN::PLANNER (the run may be the same).")],
+) -> None:
+    """Compare two runs: paired differences with intervals on the missions that both have."""
+    from reasoned_explorer.cli.bench import compare_runs
+
+    compare_runs(first, second)
+
+
+@answering
+def export_(
+    run: Run,
+    path: Annotated[Path, typer.Argument(metavar="FILE", help="results.csv or results.parquet")],
+) -> None:
+    """Write every mission of a run into a CSV or Parquet file."""
+    from reasoned_explorer.cli.bench import export_run
+
+    export_run(run, path)

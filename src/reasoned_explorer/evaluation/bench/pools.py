@@ -1,0 +1,118 @@
+"""Who runs the missions of a run on this machine: this process, or several."""
+
+import os
+import threading
+from collections.abc import Generator, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from itertools import chain
+from multiprocessing import get_context, parent_process
+
+from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
+from reasoned_explorer.evaluation.bench.worker import Done, failed_row, run_task
+
+#: Missions handed out ahead, a worker: enough that none waits, few enough that memory does not grow with the run.
+_AHEAD = 3
+#: A mission whose process died is tried so often; then it has failed.
+MAX_TRIES = 3
+_BLAS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+_plan: BenchPlan | None = None
+
+
+def run_here(plan: BenchPlan, tasks: Sequence[Task]) -> Iterator[Done]:
+    """Run missions one after the other in this process."""
+    for task in tasks:
+        yield run_task(plan, task)
+
+
+def run_in_processes(plan: BenchPlan, tasks: Sequence[Task], *, workers: int) -> Iterator[Done]:
+    """Run missions in several processes; they come in the order in which they end.
+
+    A process that dies takes nothing with it but the missions that it was in: these are tried again. Processes whose
+    parent is gone end by themselves.
+    """
+    left = iter(tasks)
+    tries: dict[Task, int] = {}
+    again: list[Task] = []
+    with _one_thread_each():
+        while True:
+            broken = yield from _run_pool(plan, chain(again, left), workers)
+            if broken is None:
+                return
+            again = []
+            for task in broken:
+                tries[task] = tries.get(task, 0) + 1
+                if tries[task] < MAX_TRIES:
+                    again.append(task)
+                else:
+                    yield lost(plan, task, f"its process died {MAX_TRIES} times")
+
+
+def lost(plan: BenchPlan, task: Task, reason: str) -> Done:
+    """Return the outcome of a mission whose worker was lost for good."""
+    return Done(task, failed_row(plan, task, reason).as_json(), None, 0.0, failed=True, usd=0.0)
+
+
+def _run_pool(plan: BenchPlan, tasks: Iterator[Task], workers: int) -> Generator[Done, None, list[Task] | None]:
+    """Run missions until they are done (returns None) or a process dies (returns the missions that were under way)."""
+    under_way: dict[Future[Done], Task] = {}
+    broken: list[Task] = []
+    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_begin, initargs=(plan,))
+    try:
+        while True:
+            for task in tasks:
+                try:
+                    under_way[pool.submit(_run, task)] = task
+                except BrokenProcessPool:
+                    broken.append(task)
+                if broken or len(under_way) >= _AHEAD * workers:
+                    break
+            if not under_way:
+                return broken or None
+            for future in wait(under_way, return_when=FIRST_COMPLETED).done:
+                task = under_way.pop(future)
+                try:
+                    yield future.result()
+                except BrokenProcessPool:
+                    broken.append(task)
+            if broken:
+                broken += under_way.values()
+                return broken
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _begin(plan: BenchPlan) -> None:
+    global _plan  # noqa: PLW0603 - what a worker process is for
+    _plan = plan
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
+def _run(task: Task) -> Done:
+    if _plan is None:
+        raise AssertionError
+    return run_task(_plan, task)
+
+
+@contextmanager
+def _one_thread_each() -> Iterator[None]:
+    """Have processes that start now count with one thread each: they are side by side already."""
+    before = {name: os.environ.get(name) for name in _BLAS}
+    os.environ.update(dict.fromkeys(_BLAS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value

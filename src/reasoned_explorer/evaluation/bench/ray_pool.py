@@ -1,0 +1,83 @@
+"""Missions of a run on a Ray cluster: the same missions, the same rows, whichever machine runs which."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
+from reasoned_explorer.evaluation.bench.pools import MAX_TRIES, lost
+from reasoned_explorer.evaluation.bench.worker import Done, run_task
+from reasoned_explorer.model import Fault, MissingDependencyError, SettingsError
+
+#: Missions handed out ahead for each processor of the cluster.
+_AHEAD = 2
+
+
+def run_on_ray(plan: BenchPlan, tasks: Sequence[Task], *, address: str, workers: int | None = None) -> Iterator[Done]:
+    """Run missions on a Ray cluster; they come in the order in which they end.
+
+    A mission whose worker or node is lost is tried again elsewhere.
+
+    Args:
+        plan: Of the run.
+        tasks: Its missions.
+        address: ``auto`` joins the cluster that this machine belongs to, or starts one here where there is none;
+            otherwise the address of a cluster.
+        workers: Processors that a cluster started here has; None takes those of this machine.
+
+    Raises:
+        MissingDependencyError: If Ray is not installed.
+        SettingsError: If the cluster cannot be reached.
+    """
+    ray = _ray()
+    started = _join(ray, address, workers)
+    try:
+        # Read once by every node, not sent along with every mission.
+        shared = ray.put(plan)
+        remote = ray.remote(num_cpus=1, max_retries=MAX_TRIES - 1)(run_task)
+        left = iter(tasks)
+        under_way: dict[Any, Task] = {}
+        most = _AHEAD * max(1, int(ray.cluster_resources().get("CPU", 1)))
+        while True:
+            for task in left:
+                under_way[remote.remote(shared, task)] = task
+                if len(under_way) >= most:
+                    break
+            if not under_way:
+                return
+            ready, _ = ray.wait(list(under_way), num_returns=1)
+            for reference in ready:
+                task = under_way.pop(reference)
+                try:
+                    yield ray.get(reference)
+                except ray.exceptions.RayError as error:
+                    yield lost(plan, task, f"its worker was lost {MAX_TRIES} times: {type(error).__name__}")
+    finally:
+        if started:
+            ray.shutdown()
+
+
+def _ray() -> Any:
+    try:
+        import ray
+    except ImportError as error:
+        raise MissingDependencyError("--ray", "ray", "pip install 'reasoned-explorer[ray]'") from error
+    return ray
+
+
+def _join(ray: Any, address: str, workers: int | None) -> bool:
+    """Join a cluster; return whether it was done here and has to be undone here."""
+    if ray.is_initialized():
+        return False
+    quiet = {"log_to_driver": False, "include_dashboard": False, "logging_level": "ERROR"}
+    try:
+        if address != "auto":
+            ray.init(address=address, **quiet)
+            return True
+        try:
+            ray.init(address="auto", **quiet)
+        except ConnectionError:
+            ray.init(address="local", num_cpus=workers, **quiet)
+    except (ConnectionError, ValueError, RuntimeError) as error:
+        what = f"the cluster at {address!r} cannot be reached: {error}"
+        raise SettingsError("--ray", [Fault(what, "auto, or the address of a running Ray cluster")]) from error
+    return True

@@ -1,0 +1,221 @@
+"""A run on disk: one SQLite file, and the records of its missions beside it.
+
+Each mission is written in a transaction of its own, after its record: what the store says is finished is finished
+whole, whenever the process is killed. Rows are read in one order, whatever the order in which they came in.
+
+``run.sqlite`` has the table ``run`` (what the run is: its plan, its versions, as JSON) and the table ``missions``: a
+mission's key, its row as JSON, and the seconds that it took on this machine, which no table of results reads. The view
+``results`` has the row's figures as columns, for whoever asks with SQL.
+"""
+
+import json
+import sqlite3
+import zlib
+from collections.abc import Iterable, Iterator
+from contextlib import closing
+from dataclasses import fields
+from hashlib import blake2b
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
+from reasoned_explorer.evaluation.metrics import MissionScore
+from reasoned_explorer.evaluation.record_file import parse_record
+from reasoned_explorer.evaluation.row import MissionRow
+from reasoned_explorer.model import Fault, RecordError, RecordWriteError
+from reasoned_explorer.model.record import EpisodeRecord
+
+STORE_NAME = "run.sqlite"
+TRACES_NAME = "traces"
+_STORE_VERSION = 1
+_KEY = ("vehicle", "method", "mission_id")
+#: Columns of the view, from a row's JSON.
+_COLUMNS = tuple(item.name for item in fields(MissionRow) if item.name not in {*_KEY, "score"})
+_SCORES = tuple(item.name for item in fields(MissionScore) if item.name not in {*_KEY, "success_at"})
+_FIGURES = ", ".join(
+    [f"json_extract(row, '$.{name}') AS {name}" for name in _COLUMNS]
+    + [f"json_extract(row, '$.score.{name}') AS {name}" for name in _SCORES]
+)
+# The names in these queries are those of our own fields, never what somebody typed.
+_SCHEMA = (
+    """
+CREATE TABLE run (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE missions (
+    vehicle TEXT NOT NULL, method TEXT NOT NULL, mission_id TEXT NOT NULL,
+    row TEXT NOT NULL, wall_s REAL NOT NULL,
+    PRIMARY KEY (vehicle, method, mission_id)
+) WITHOUT ROWID;
+CREATE VIEW results AS SELECT vehicle, method, mission_id, """  # noqa: S608
+    + _FIGURES
+    + ", wall_s FROM missions;"
+)
+
+
+class RunStore:
+    """A run's store; a context manager. Make one with `create` or `open`."""
+
+    def __init__(self, folder: Path, connection: sqlite3.Connection) -> None:
+        self.folder = folder
+        self._connection = connection
+
+    @classmethod
+    def create(cls, folder: Path, plan: BenchPlan, about: dict[str, Any]) -> "RunStore":
+        """Make the store of a new run.
+
+        Args:
+            folder: Of the run; made where it is not there. It must not hold a run already.
+            plan: What is to be run.
+            about: What else is to be known of it: versions, the command.
+
+        Raises:
+            RecordError: If the folder holds a run, or cannot be written to.
+        """
+        path = folder / STORE_NAME
+        if path.exists():
+            fault = Fault(
+                f"{path} is there already", "a folder without a run", "go on with it (--resume) or name another"
+            )
+            raise RecordError("run", [fault])
+        half = path.with_suffix(".half")
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            half.unlink(missing_ok=True)
+            # Made beside and renamed: there is never a store without a plan.
+            with closing(sqlite3.connect(half)) as connection, connection:
+                connection.executescript(_SCHEMA)
+                facts = {"store_version": _STORE_VERSION, "plan": plan.as_dict(), "about": about}
+                connection.executemany(
+                    "INSERT INTO run VALUES (?, ?)",
+                    [(name, json.dumps(value, sort_keys=True, ensure_ascii=False)) for name, value in facts.items()],
+                )
+            half.replace(path)
+        except (OSError, sqlite3.Error) as error:
+            fault = Fault(f"{path} cannot be written: {error}", "a folder that can be written to")
+            raise RecordError("run", [fault]) from error
+        return cls.open(folder)
+
+    @classmethod
+    def open(cls, folder: Path) -> "RunStore":
+        """Open the store of a run.
+
+        Raises:
+            RecordError: If there is none, or it is none of ours, or of another version.
+        """
+        path = folder / STORE_NAME
+        if not path.is_file():
+            fault = Fault(f"{folder} holds no {STORE_NAME}", "the folder of a run of rex bench")
+            raise RecordError("run", [fault])
+        try:
+            connection = sqlite3.connect(path, isolation_level=None, timeout=60.0)
+            connection.execute("PRAGMA journal_mode = WAL")
+            # A killed process loses nothing; only a machine that loses its power may lose the last missions.
+            connection.execute("PRAGMA synchronous = NORMAL")
+            store = cls(folder, connection)
+            version = store._fact("store_version")
+        except (sqlite3.Error, KeyError, ValueError) as error:
+            fault = Fault(f"{path} cannot be read: {error}", "a run's store")
+            raise RecordError("run", [fault]) from error
+        if version != _STORE_VERSION:
+            fault = Fault(
+                f"{path} is of version {version}", f"version {_STORE_VERSION}", "run it again with this version"
+            )
+            raise RecordError("run", [fault])
+        return store
+
+    @property
+    def plan(self) -> BenchPlan:
+        """What the run runs.
+
+        Raises:
+            InputError: If the plan was written by a version that runs it differently.
+        """
+        return BenchPlan.from_dict(self._fact("plan"))
+
+    @property
+    def about(self) -> dict[str, Any]:
+        """What else is known of the run."""
+        about: dict[str, Any] = self._fact("about")
+        return about
+
+    def finished(self) -> set[tuple[str, str, str]]:
+        """Return the keys of the missions that are finished: vehicle, method, mission id."""
+        return set(self._connection.execute("SELECT vehicle, method, mission_id FROM missions"))
+
+    def add(self, task: Task, row: str, *, trace: bytes | None, wall_s: float) -> None:
+        """Write a finished mission: its record first, then its row, whole or not at all. Twice is once.
+
+        Raises:
+            RecordWriteError: If the disk is full, or the store cannot be written for another reason.
+        """
+        try:
+            if trace is not None:
+                path = self.trace_path(*task.key)
+                path.parent.mkdir(parents=True, exist_ok=True)
+                half = path.with_suffix(".half")
+                half.write_bytes(trace)
+                half.replace(path)
+            self._connection.execute("INSERT OR IGNORE INTO missions VALUES (?, ?, ?, ?, ?)", (*task.key, row, wall_s))
+        except (OSError, sqlite3.Error) as error:
+            raise RecordWriteError(f"run: {self.folder} cannot be written: {error}") from error
+
+    def rows(self, *, vehicle: str | None = None, method: str | None = None) -> Iterator[MissionRow]:
+        """Return the rows, sorted by vehicle, method and mission id."""
+        query = "SELECT row FROM missions WHERE (?1 IS NULL OR vehicle = ?1) AND (?2 IS NULL OR method = ?2)"
+        for (line,) in self._connection.execute(query + " ORDER BY vehicle, method, mission_id", (vehicle, method)):
+            yield MissionRow.from_json(line)
+
+    def wall_s(self) -> float:
+        """Return the seconds that all missions took on the machines that ran them, added up."""
+        total: float = self._connection.execute("SELECT coalesce(sum(wall_s), 0) FROM missions").fetchone()[0]
+        return total
+
+    def trace_path(self, vehicle: str, method: str, mission_id: str) -> Path:
+        """Return where the record of a mission is kept. Names are hashed: they may hold what no file name may."""
+        name = blake2b(mission_id.encode(), digest_size=12).hexdigest()
+        return self.folder / TRACES_NAME / vehicle / _plain(method) / f"{name}.jsonl.z"
+
+    def record(self, row: MissionRow) -> EpisodeRecord | None:
+        """Return the record of a mission, or None where it was not kept.
+
+        Raises:
+            RecordError: If what is there is no record.
+        """
+        path = self.trace_path(row.score.vehicle, row.method, row.mission_id)
+        if not path.is_file():
+            return None
+        try:
+            return parse_record(zlib.decompress(path.read_bytes()), path)
+        except zlib.error as error:
+            raise RecordError("record", [Fault(f"{path} cannot be read: {error}", "a compressed record")]) from error
+
+    def results(self) -> tuple[list[str], Iterable[tuple[Any, ...]]]:
+        """Return the view ``results`` without the machine's seconds: names of the columns, and the rows in order."""
+        query = (
+            "SELECT vehicle, method, mission_id, " + _FIGURES + " FROM missions ORDER BY 1, 2, 3"  # noqa: S608
+        )
+        return [*_KEY, *_COLUMNS, *_SCORES], self._connection.execute(query)
+
+    def close(self) -> None:
+        """Close the file; safe to call twice."""
+        self._connection.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _fact(self, name: str) -> Any:
+        found = self._connection.execute("SELECT value FROM run WHERE name = ?", (name,)).fetchone()
+        if found is None:
+            raise KeyError(name)
+        return json.loads(found[0])
+
+
+def _plain(name: str) -> str:
+    """Return a name that is safe as the name of a folder, and still unlike others."""
+    plain = "".join(char if char.isalnum() or char in "-_" else "_" for char in name)
+    return plain if plain == name else f"{plain}-{blake2b(name.encode(), digest_size=4).hexdigest()}"

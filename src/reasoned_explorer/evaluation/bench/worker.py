@@ -1,0 +1,177 @@
+"""One mission of a run, wherever it is run: in this process, in another, on another machine."""
+
+import math
+import time
+import zlib
+from dataclasses import dataclass, fields, replace
+from functools import lru_cache
+from typing import Any
+
+from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
+from reasoned_explorer.evaluation.metrics import MissionOutcome, MissionScore, score
+from reasoned_explorer.evaluation.mission import Mission, MissionResult
+from reasoned_explorer.evaluation.record_file import record_bytes
+from reasoned_explorer.evaluation.row import MissionRow
+from reasoned_explorer.model import ReasonedExplorerError
+from reasoned_explorer.model.record import MissionEnd, StepRecord
+from reasoned_explorer.task.split import Place, SplitEpisode
+from reasoned_explorer.task.splitting import open_place
+from reasoned_explorer.world.atlas import Atlas
+from reasoned_explorer.world.taxonomy import CLASS_NAMES, OBJECT_CLASSES
+
+#: What is at least this long is a large obstacle, metres; a plant's trunk is small.
+LARGE_M = 3.0
+_SMALL = frozenset(
+    OBJECT_CLASSES[name].noun
+    for name in CLASS_NAMES
+    if OBJECT_CLASSES[name].kind == "plant" or max(OBJECT_CLASSES[name].size_m[:2]) < LARGE_M
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """A mission that is over.
+
+    Attributes:
+        task: Which.
+        row: Its row, as `MissionRow.as_json` gives it.
+        trace: Its record, compressed, or None.
+        wall_s: Seconds that it took on the machine that ran it.
+        failed: A part failed.
+        usd: What it cost, US dollars.
+    """
+
+    task: Task
+    row: str
+    trace: bytes | None
+    wall_s: float
+    failed: bool
+    usd: float
+
+
+@lru_cache(maxsize=2)
+def _atlas_of(place: Place) -> Atlas:
+    # Missions of a place come together; the second is for the moment of changing over.
+    return open_place(place)
+
+
+def run_task(plan: BenchPlan, task: Task) -> Done:
+    """Run a mission. What goes wrong in it is its outcome, never an exception."""
+    started_s = time.perf_counter()
+    item = plan.episode_of(task)
+    trace = None
+    try:
+        settings = plan.settings_of(task)
+        atlas = _atlas_of(plan.split.place(item.place))
+        mission = Mission(item.episode.spec.text, atlas, settings, start=item.episode.start)
+        result = mission.run()
+    except ReasonedExplorerError as error:
+        row = failed_row(plan, task, str(error))
+    else:
+        row = _row_of(plan, task, item, result)
+        if plan.keep_traces:
+            trace = zlib.compress(record_bytes(result.record), 6)
+    failed = row.end == MissionEnd.FAULT.value
+    return Done(task, row.as_json(), trace, time.perf_counter() - started_s, failed, row.usd)
+
+
+def failed_row(plan: BenchPlan, task: Task, reason: str) -> MissionRow:
+    """Return the row of a mission that could not be run: a failure, with its reason; nothing is invented about it."""
+    item = plan.episode_of(task)
+    place = plan.split.place(item.place)
+    outcome = MissionOutcome(
+        mission_id=task.mission_id,
+        level=item.episode.spec.level,
+        vehicle=task.vehicle,
+        declared=False,
+        in_place=False,
+        oracle_success=False,
+        path_length_m=0.0,
+        reference_length_m=item.episode.reference_length_m,
+        computing_s=0.0,
+        travelling_s=0.0,
+        time_limit_s=plan.base.explorer.t_max_s,
+        distance_to_goal_m=math.inf,
+    )
+    return MissionRow(
+        method=task.method,
+        mission_id=task.mission_id,
+        place=place.name,
+        city=place.city,
+        district=place.district,
+        band=item.band,
+        goal=item.episode.spec.text,
+        seed=item.episode.seed,
+        planner=task.method,
+        minds=plan.base.minds,
+        captioner=plan.base.captioner,
+        ct_label="",
+        attribution="",
+        end=MissionEnd.FAULT.value,
+        reason=reason,
+        judge="",
+        declared=False,
+        compliant=None,
+        steps=0,
+        calls=0,
+        tokens_in=0,
+        tokens_out=0,
+        usd=0.0,
+        evaluator_sum=0.0,
+        evaluator_count=0,
+        small_collisions=0,
+        large_collisions=0,
+        score=score(outcome),
+    )
+
+
+def _row_of(plan: BenchPlan, task: Task, item: SplitEpisode, result: MissionResult) -> MissionRow:
+    header, summary, steps = result.record.header, result.summary, result.record.steps
+    place = plan.split.place(item.place)
+    calls = [call for step in steps for call in step.calls]
+    scores = _evaluator_scores(steps)
+    small = sum(what in _SMALL for what in summary.collisions)
+    return MissionRow(
+        method=task.method,
+        mission_id=task.mission_id,
+        place=place.name,
+        city=place.city,
+        district=place.district,
+        band=item.band,
+        goal=header.goal,
+        seed=header.seed,
+        planner=header.planner,
+        minds=header.minds,
+        captioner=header.captioner,
+        ct_label=header.ct_label,
+        attribution=header.attribution,
+        end=summary.end.value,
+        reason=summary.reason,
+        judge=summary.judge,
+        declared=summary.declared,
+        compliant=summary.compliant,
+        steps=summary.steps,
+        calls=len(calls),
+        tokens_in=sum(call.tokens_in for call in calls),
+        tokens_out=sum(call.tokens_out for call in calls),
+        usd=round(math.fsum(call.usd for call in calls), 9),
+        evaluator_sum=round(math.fsum(scores), 4),
+        evaluator_count=len(scores),
+        small_collisions=small,
+        large_collisions=len(summary.collisions) - small,
+        score=_rounded(replace(result.score, mission_id=task.mission_id)),
+    )
+
+
+def _evaluator_scores(steps: tuple[StepRecord, ...]) -> list[float]:
+    return [node.score for step in steps for node in step.tree if node.score is not None]
+
+
+def _rounded(scored: MissionScore) -> MissionScore:
+    """Round what is measured to the micro: floats of the last digit are no result."""
+    plain: dict[str, Any] = {
+        item.name: round(value, 6)
+        for item in fields(scored)
+        if isinstance(value := getattr(scored, item.name), float) and math.isfinite(value)
+    }
+    return replace(scored, **plain)

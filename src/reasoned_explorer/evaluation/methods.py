@@ -1,0 +1,130 @@
+"""The rows of a table: which planner, whose minds in which role, and what is changed for a bound or a control.
+
+A method is written as a planner's name, with settings of the planner behind a colon, minds of its own for visionary and
+evaluator behind an ``@``, and ``+perfect-halt`` at the end where the judge is to do the halting: ``llm-rrt``,
+``llm-rrt:depth=1``, ``llm-rrt@embedded/oracle``, ``follow-paths+perfect-halt``. Bounds have names of their own.
+Whatever planner is registered, by this package or another, is a method.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from reasoned_explorer.evaluation.mission import MissionSettings
+from reasoned_explorer.model import Fault, InputError, SettingsError, UnknownNameError
+from reasoned_explorer.planning.registry import PLANNERS
+from reasoned_explorer.planning.setting_pairs import parse_planner_settings
+
+PERFECT_HALT = "perfect-halt"
+_HALT_SUFFIX = f"+{PERFECT_HALT}"
+
+#: The paper's method and its kin, then what asks no model.
+PLANNER_METHODS = (
+    "llm-rrt",
+    "llm-rrt-authors",
+    "llm-mcts",
+    "llm-as-eval",
+    "nearest-frontier",
+    "follow-paths",
+    "object-density",
+    "random",
+)
+CONTROL_METHODS = ("llm-rrt-echo", "llm-rrt-shuffled", "llm-as-eval-matched")
+BOUND_METHODS = ("oracle", "foresight-30m", "foresight-60m")
+#: What ``--planners`` takes instead of names.
+GROUPS: Mapping[str, tuple[str, ...]] = {
+    "planners": PLANNER_METHODS,
+    "bounds": BOUND_METHODS,
+    "controls": CONTROL_METHODS,
+    "halts": tuple(f"{name}{_HALT_SUFFIX}" for name in PLANNER_METHODS),
+    "default": (*PLANNER_METHODS, *BOUND_METHODS),
+    "all": (
+        *PLANNER_METHODS,
+        *CONTROL_METHODS,
+        *BOUND_METHODS,
+        *(f"{name}{_HALT_SUFFIX}" for name in PLANNER_METHODS),
+    ),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Method:
+    """A row of a table.
+
+    Attributes:
+        name: As typed, e.g. ``"llm-rrt:depth=1+perfect-halt"``.
+        planner: A registered planner.
+        planner_settings: Of the planner.
+        visionary: Mind of this role where the method fixes it, or None.
+        evaluator: Likewise.
+        checker: Likewise.
+        agent: See `MissionSettings.agent`.
+        is_bound: It reads the truth: no method that a robot could run.
+    """
+
+    name: str
+    planner: str
+    planner_settings: Mapping[str, Any] = field(default_factory=dict)
+    visionary: str | None = None
+    evaluator: str | None = None
+    checker: str | None = None
+    agent: str = "explorer"
+    is_bound: bool = False
+
+    def settings(self, base: MissionSettings) -> MissionSettings:
+        """Return a mission's settings with this method's own put in."""
+        return replace(
+            base,
+            planner=self.planner,
+            planner_settings={**self.planner_settings},
+            visionary=self.visionary or base.visionary,
+            evaluator=self.evaluator or base.evaluator,
+            checker=self.checker or base.checker,
+            agent=self.agent,
+        )
+
+
+def method(name: str) -> Method:
+    """Return the method that a name means.
+
+    Raises:
+        UnknownNameError: If there is no such planner or bound.
+        SettingsError: If its settings cannot be read.
+    """
+    stem, halts = (name.removesuffix(_HALT_SUFFIX), PERFECT_HALT) if name.endswith(_HALT_SUFFIX) else (name, None)
+    stem, at, roles = stem.partition("@")
+    visionary, slash, evaluator = roles.partition("/")
+    if at and not (visionary and slash and evaluator):
+        raise SettingsError(f"planner {name!r}", [Fault(f"minds {roles!r}", "visionary/evaluator behind the @")])
+    planner, colon, listed = stem.partition(":")
+    settings = parse_planner_settings([pair for pair in listed.split(",") if pair]) if colon else {}
+    if planner in BOUND_METHODS:
+        if settings or halts or at:
+            raise SettingsError(f"planner {name!r}", [Fault(f"{planner} with settings", "a bound as it is", planner)])
+        if planner == "oracle":
+            return Method(name, "nearest-frontier", agent="guide", is_bound=True)
+        return Method(name, "llm-as-eval", evaluator=planner, is_bound=True)
+    if planner not in PLANNERS.names():
+        raise UnknownNameError("planner", planner, [*PLANNERS.names(), *BOUND_METHODS, *GROUPS])
+    return Method(name, planner, settings, visionary or None, evaluator or None, halts, is_bound=halts is not None)
+
+
+def methods(names: Sequence[str]) -> tuple[Method, ...]:
+    """Return the methods that names and groups of names mean, each once, in order.
+
+    Raises:
+        InputError: If names cannot be read, with all of these, or there is none.
+    """
+    listed = list(dict.fromkeys(single for name in names for single in GROUPS.get(name, (name,))))
+    found: list[Method] = []
+    faults: list[Fault] = []
+    for name in listed:
+        try:
+            found.append(method(name))
+        except InputError as error:
+            faults += error.faults
+    if not listed:
+        faults.append(Fault("no planner", f"at least one of {', '.join((*GROUPS, *PLANNERS.names()))}"))
+    if faults:
+        raise InputError("planners", faults)
+    return tuple(found)
