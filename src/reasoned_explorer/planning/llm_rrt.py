@@ -25,7 +25,8 @@ class LlmRrtSettings:
         depth: Length of each chain (L, 2 is the paper's best), at least 0.
         include_own_score: Whether the described scene's own score takes part in the mean.
         depth_weight: Weight of a node at depth d is ``depth_weight ** (d - 1)``; 1 is the paper's unweighted mean.
-        restart: Imagine every depth from the described scene itself (the authors' code) instead of continuing a chain.
+        restart: Begin every rollout at the imagined child (the authors' code: ``simulation_async`` of ``src/RRT.py``)
+            instead of continuing a chain; up to depth 2 there is one rollout for each child, and no difference.
     """
 
     children: int = 3
@@ -85,15 +86,16 @@ class LlmRrt:
         for depth in range(1, self.settings.depth + 1):
             if not parents:
                 break
-            restarts = self.settings.restart and depth > 1
-            if restarts:
-                # A later rollout from the same scene needs a key of its own, or its draws would repeat the first's.
-                parents = [replace(scene, key=(*scene.key, depth)) for scene in described]
-            count = self.settings.children if depth == 1 or restarts else 1
-            grown = await self._minds.visionary.imagine(goal, parents, count=count)
+            grown = await self._minds.visionary.imagine(
+                goal, parents, count=self.settings.children if depth == 1 else 1
+            )
             level = [child for children in grown for child in children]
             nodes += level
-            parents = [child for child in level if child.fault is None]
+            if depth == 1 or not self.settings.restart:
+                parents = starts = [child for child in level if child.fault is None]
+            else:
+                # A later rollout from the same child needs a key of its own, or its draws would repeat the first's.
+                parents = [replace(child, key=(*child.key, depth)) for child in starts]
         return nodes
 
     def _back_propagate(self, scene: Scene, tree: list[ImaginedNode]) -> FrontierScore:
