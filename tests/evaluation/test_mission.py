@@ -9,8 +9,9 @@ from reasoned_explorer.evaluation.mission import Mission, MissionSettings, run_m
 from reasoned_explorer.evaluation.record_file import read_record
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
-from reasoned_explorer.model import GoalError, RecordError, StartError, UnknownNameError
+from reasoned_explorer.model import GoalError, RecordError, SettingsError, StartError, UnknownNameError
 from reasoned_explorer.model.record import MissionEnd
+from reasoned_explorer.planning.without_models import NearestFrontier
 from reasoned_explorer.task.sampling import SamplingSettings, sample_episodes
 from reasoned_explorer.vehicles import PROFILES
 from reasoned_explorer.world.atlas import Atlas
@@ -87,13 +88,31 @@ def test_every_vehicle_flies_or_walks_the_mission(vehicle: str) -> None:
     assert result.summary.success, result.summary
 
 
-@pytest.mark.parametrize("planner", ["llm-rrt", "llm-as-eval", "nearest-frontier", "follow-paths"])
+@pytest.mark.parametrize("planner", ["llm-rrt", "llm-rrt-authors", "llm-mcts", "llm-as-eval", "follow-paths", "random"])
 @pytest.mark.parametrize("captioner", ["perfect", "noisy"])
 def test_every_planner_ends_its_mission_in_time(planner: str, captioner: str, plaza: Atlas) -> None:
     settings = MissionSettings(planner=planner, captioner=captioner, seed=3)
     summary = run_mission("Find me somewhere to sit", plaza, settings).summary
     assert summary.end in set(MissionEnd) - {MissionEnd.FAULT, MissionEnd.INTERRUPTED}
     assert summary.ct_s + summary.tt_s < 1800.0 + 240.0
+
+
+def test_the_settings_of_the_agent_that_belong_to_a_planner_are_in_force_and_in_the_header(plaza: Atlas) -> None:
+    result = run_mission("Find me a public toilet", plaza, MissionSettings(planner="llm-rrt-authors", seed=4))
+    kept = result.record.header.settings["explorer"]
+    assert (kept["check_after_planning"], kept["straight_legs"], kept["views"]) == (True, True, 3)
+    first = result.record.steps[0]
+    checks = [call.started_s for call in first.calls if call.role == "checker"]
+    assert len(set(checks)) == 3  # one after the other
+    planned_s = max(call.started_s + call.latency_s for call in first.calls if call.role == "evaluator")
+    assert min(checks) == pytest.approx(planned_s, abs=1e-3)
+    assert run_mission("Find me a bench", plaza, ORACLE).record.header.settings["explorer"]["straight_legs"] is False
+
+
+def test_a_planner_that_overrides_what_the_agent_does_not_have_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(NearestFrontier, "explorer", {"straight_leg": True}, raising=False)
+    with pytest.raises(SettingsError, match="straight_leg"):
+        Mission("Find me a bench", courtyard(), MissionSettings(planner="nearest-frontier"), start=Pose(50.0, 45.0))
 
 
 @pytest.mark.parametrize("district", ["park", "residential", "waterfront"])

@@ -1,8 +1,11 @@
 """The agent's loop, step by step, with fake parts on an empty plane."""
 
+import math
+
 import pytest
 
 from reasoned_explorer.exploration.settings import ExplorerSettings
+from reasoned_explorer.model import Scene
 from reasoned_explorer.model.record import MissionEnd
 from reasoned_explorer.planning import FrontierScore
 from tests.exploration.fakes import Plane
@@ -128,3 +131,49 @@ def test_the_step_budget_ends_a_mission() -> None:
     plane = Plane(ExplorerSettings(max_steps=3))
     ended = plane.run()
     assert (ended.end, ended.steps) == (MissionEnd.BUDGET_SPENT, 3)
+
+
+def test_checks_after_planning_are_made_one_by_one_and_all_of_it_is_waited_for() -> None:
+    plane = Plane(ExplorerSettings(t_max_s=300.0, check_after_planning=True))
+    plane.run()
+    first = plane.steps[0]
+    assert first.think_s == pytest.approx(2.0 + 10.0 + 3 * 3.0)  # captions, then the plan, then three checks
+    assert first.plan_s == pytest.approx(10.0)
+
+
+def test_checks_one_by_one_stop_at_the_first_that_finds_the_goal() -> None:
+    plane = Plane(ExplorerSettings(check_after_planning=True))
+    asked: list[int] = []
+
+    def rule(scene: Scene) -> bool:
+        asked.append(scene.key[2])
+        return scene.key[1] == 1 or scene.key[2] == 1
+
+    plane.checker.rule = rule
+    ended = plane.run()
+    assert ended.end is MissionEnd.FOUND
+    assert asked == [0, 1, 0]  # the third view is not asked about; the last is the one that makes sure
+    assert ended.ct_s == pytest.approx(2.0 + 10.0 + 2 * 3.0 + 2.0 + 3.0)
+    assert plane.planner.finished == 1
+    assert [view.q for view in plane.steps[0].views[:3]] == [3.0] * 3  # the plan was made, and is kept
+
+
+def test_a_checker_that_fails_after_planning_costs_a_step_and_not_the_plan() -> None:
+    plane = Plane(ExplorerSettings(t_max_s=300.0, check_after_planning=True))
+    plane.checker.broken = True
+    plane.on_step = lambda step: setattr(plane.checker, "broken", False)
+    assert plane.run().end is MissionEnd.TIME_OVER
+    assert plane.steps[0].choice is not None
+
+
+@pytest.mark.parametrize(("straight", "legs"), [(False, 2), (True, 1)])
+def test_a_remote_frontier_is_flown_to_straight_or_gone_to_along_known_edges(straight: bool, legs: int) -> None:
+    plane = Plane(ExplorerSettings(t_max_s=300.0, straight_legs=straight))
+    plane.planner.rule = lambda scene: FrontierScore(3.0, blocked=scene.key[0] > 0)
+    plane.run()
+    second = plane.steps[1]
+    assert second.choice is not None
+    assert second.choice.frontier in (1, 2)  # seen in the first step, left over
+    assert len(second.legs) == legs
+    straight_m = math.dist(second.legs[-1].target, (plane.steps[1].pose[0], plane.steps[1].pose[1]))
+    assert (second.choice.distance_m == pytest.approx(straight_m, abs=0.01)) is straight

@@ -32,5 +32,5 @@ def test_a_missing_score_takes_the_longest_step() -> None:
 
 def test_all_faults_are_told_at_once_and_nan_is_one() -> None:
     with pytest.raises(SettingsError) as raised:
-        ExplorerSettings(views=0, t_max_s=math.nan, step_min_m=20.0, step_max_m=10.0, looks_to_confirm=0)
+        ExplorerSettings(views=0, t_max_s=math.nan, step_min_m=20.0, step_max_m=10.0, straight_legs=None)  # type: ignore[arg-type]
     assert len(raised.value.faults) == 4

@@ -66,7 +66,10 @@ def test_depth_zero_is_llm_as_eval() -> None:
         ({"include_own_score": True, "children": 1}, (1.0 + 2.0 + 5.0) / 3),
         ({"depth_weight": 0.5, "children": 1}, (2.0 + 0.5 * 5.0) / 1.5),
         ({"children": 2}, (2.0 + 2.0 + 5.0 + 5.0) / 4),
-        ({"restart": True}, 2.0),  # every rollout starts anew from the scene: nothing is ever deeper than 1
+        (
+            {"restart": True, "depth": 3},
+            (2.0 + 5.0 + 5.0) / 3,
+        ),  # both rollouts begin at the child: none is deeper than 2
     ],
 )
 def test_the_papers_other_readings_are_settings(settings: dict[str, Any], q: float) -> None:
@@ -75,9 +78,20 @@ def test_the_papers_other_readings_are_settings(settings: dict[str, Any], q: flo
 
 
 def test_restarted_rollouts_have_keys_of_their_own() -> None:
-    plan, *_ = _run(Scripts(), _scenes("a"), restart=True)
+    plan, *_ = _run(Scripts(), _scenes("a"), restart=True, depth=4)
     keys = [node.scene.key for node in plan.tree]
-    assert len(set(keys)) == len(keys) == 6
+    assert len(set(keys)) == len(keys) == 3 + 3 * 3
+
+
+def test_restarted_rollouts_are_imagined_from_the_child_and_not_from_each_other() -> None:
+    scripts = Scripts(visionary=lambda goal, scene: f"beyond {scene.text}")
+    plan, *_ = _run(scripts, _scenes("a"), restart=True, depth=4, children=1)
+    assert [node.scene.text for node in plan.tree] == ["beyond a"] + ["beyond beyond a"] * 3
+
+
+def test_up_to_depth_two_there_is_nothing_to_restart() -> None:
+    (plan, _, seconds), (restarted, _, again) = (_run(Scripts(), _scenes("a"), restart=each) for each in (False, True))
+    assert (plan, seconds) == (restarted, again)
 
 
 def test_a_blocked_node_counts_as_the_lowest_score() -> None:

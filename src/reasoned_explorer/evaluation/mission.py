@@ -3,7 +3,7 @@
 import gc
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -22,10 +22,11 @@ from reasoned_explorer.minds.context import MindContext
 from reasoned_explorer.minds.latency import latency_profile
 from reasoned_explorer.minds.ledger import CallRecord, Ledger
 from reasoned_explorer.minds.registry import make_minds
-from reasoned_explorer.model import LegOutcome, TrackPoint, UnknownNameError
+from reasoned_explorer.model import Fault, LegOutcome, SettingsError, TrackPoint, UnknownNameError
 from reasoned_explorer.model.record import EpisodeRecord, MissionEnd, MissionHeader, MissionSummary, StepRecord
 from reasoned_explorer.perception.context import CaptionerContext
 from reasoned_explorer.perception.registry import CAPTIONERS
+from reasoned_explorer.planning import Planner
 from reasoned_explorer.planning.registry import make_planner
 from reasoned_explorer.simulation.eyes import Eyes
 from reasoned_explorer.simulation.vehicle import SimulatedVehicle, check_start
@@ -61,6 +62,9 @@ class MissionSettings:
         explorer: How the agent explores.
         success_radius_m: R of the judge, metres.
         seed: Of the mission: everything that is drawn is keyed by it.
+
+    A planner may bring settings of the agent with it (`planning.Planner`); a mission's own ``settings`` are those that
+    are in force.
     """
 
     planner: str = "llm-rrt"
@@ -239,12 +243,15 @@ class Mission:
             )
 
         captioner = CAPTIONERS.load(settings.captioner)(CaptionerContext(self.clock, settings.seed, charge_captions))
-        self._labels = (make_planner(settings.planner, minds, settings.planner_settings), minds.label, captioner.label)
+        planner = make_planner(settings.planner, minds, settings.planner_settings)
+        self._labels = (planner, minds.label, captioner.label)
+        explorer = _with_overrides(settings.explorer, planner)
+        self.settings = replace(settings, explorer=explorer)
         vehicle = SimulatedVehicle(
             self.atlas, self.profile, self.start, clock=self.clock, eyes=Eyes(self.atlas), seed=settings.seed
         )
-        parts = Parts(vehicle, captioner, self._labels[0], minds.checker, self.clock, ledger)
-        return Explorer(parts, settings.explorer)
+        parts = Parts(vehicle, captioner, planner, minds.checker, self.clock, ledger)
+        return Explorer(parts, explorer)
 
     @property
     def header(self) -> MissionHeader:
@@ -355,6 +362,20 @@ class Mission:
         if end.nearest_m <= self.settings.success_radius_m:
             return f"{end.nearest_m:.0f} m away, but not in sight"
         return f"the nearest is {end.nearest_m:.0f} m away" if np.isfinite(end.nearest_m) else "there is none"
+
+
+def _with_overrides(settings: ExplorerSettings, planner: Planner) -> ExplorerSettings:
+    """Return the agent's settings with those that belong to a planner.
+
+    Raises:
+        SettingsError: If the agent has no such settings, or their values are out of range.
+    """
+    overrides: Mapping[str, bool] = getattr(planner, "explorer", {})
+    known = {each.name for each in fields(settings)}
+    unknown = [Fault(f"no setting {key!r}", "a setting of the agent") for key in sorted(set(overrides) - known)]
+    if unknown:
+        raise SettingsError(f"agent settings of the planner {planner.name}", unknown)
+    return replace(settings, **overrides)
 
 
 @cache

@@ -98,7 +98,7 @@ class Explorer:
             self.settings.sharpness_per_m,
             self.settings.half_distance_m,
             self.settings.known_radius_m,
-            self.settings.straight_distance,
+            self.settings.straight_distance or self.settings.straight_legs,
         )
 
     async def run(self, goal: Goal) -> Exploration:
@@ -191,6 +191,9 @@ class Explorer:
         started_s, looked_s = self.parts.clock.now_s(), step.look_s
         planning = asyncio.ensure_future(self._plan(goal, look.scenes, step))
         try:
+            if self.settings.check_after_planning:
+                step.plan = await planning
+                look.scores = step.plan.scores
             evidence = await self._check(goal, look, step)
             if evidence is not None:
                 # The robot is there; what is still being imagined is no longer needed.
@@ -273,15 +276,18 @@ class Explorer:
 
     async def _verdict(self, goal: Goal, look: LookDraft, step: StepDraft) -> tuple[int, Verdict] | None:
         asked = [index for index, scene in enumerate(look.scenes) if scene.fault is None]
-        try:
-            answers = await self.parts.checker.check(goal, [look.scenes[index] for index in asked])
-        except PartError as fault:
-            self._note_fault(step, fault)
-            return None
         verdicts = [Verdict(found=False, confidence=0.0, fault=scene.fault) for scene in look.scenes]
-        for index, verdict in zip(asked, answers, strict=True):
-            verdicts[index] = verdict
         look.verdicts = verdicts
+        for batch in [[index] for index in asked] if self.settings.check_after_planning else [asked]:
+            try:
+                answers = await self.parts.checker.check(goal, [look.scenes[index] for index in batch])
+            except PartError as fault:
+                self._note_fault(step, fault)
+                return None
+            for index, verdict in zip(batch, answers, strict=True):
+                verdicts[index] = verdict
+            if any(verdict.found for verdict in answers):
+                break
         found = [(-verdict.confidence, index) for index, verdict in enumerate(verdicts) if verdict.found]
         return (min(found)[1], verdicts[min(found)[1]]) if found else None
 
@@ -330,7 +336,7 @@ class Explorer:
         frontier = choice.frontier
         self.graph.take(frontier)
         step.touched[frontier.id] = frontier
-        route = self.graph.route(self._point, frontier)
+        route = [frontier.pose] if self.settings.straight_legs else self.graph.route(self._point, frontier)
         self._look_heading_rad = None
         for target in _facing_onwards(route):
             if not await self._leg(step, frontier, target):

@@ -28,6 +28,10 @@ class ExplorerSettings:
         revisit_radius_m: A new frontier nearer than this to an older path point was already visited (O).
         look_back_after_stop: Whether the look after a leg that something stopped takes in what lies behind, too, with N
             views more: what lies ahead is then known to be blocked (O).
+        check_after_planning: Whether views are checked when planning is over, one by one until one is found, as in the
+            authors' code, instead of all at once while planning goes on; CT grows by every check (C).
+        straight_legs: Whether a remote frontier is flown to straight, as the authors' drone does, instead of along
+            known edges; d is then the straight distance, too (C).
         max_faults_in_a_row: Faults of parts without a sound step between them that end the mission (O).
     """
 
@@ -45,6 +49,8 @@ class ExplorerSettings:
     merge_radius_m: float = 1.5
     revisit_radius_m: float = 3.0
     look_back_after_stop: bool = False
+    check_after_planning: bool = False
+    straight_legs: bool = False
     max_faults_in_a_row: int = 3
 
     def __post_init__(self) -> None:
@@ -65,6 +71,8 @@ class ExplorerSettings:
             (1 <= self.max_faults_in_a_row <= 100, f"max_faults_in_a_row is {self.max_faults_in_a_row}", "1 to 100"),
         )
         faults = [Fault(what, expected) for sound, what, expected in checks if not sound]
+        switches = {"check_after_planning": self.check_after_planning, "straight_legs": self.straight_legs}
+        faults += [Fault(f"{k} is {v!r}", "true or false") for k, v in switches.items() if not isinstance(v, bool)]
         if faults:
             raise SettingsError("exploration settings", faults)
 

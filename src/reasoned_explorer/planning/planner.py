@@ -46,6 +46,10 @@ class Planner(Protocol):
     Attributes:
         name: As registered.
         label: What its results are called, minds included.
+
+    A planner may also have an attribute ``explorer``, a ``Mapping[str, bool]``: settings of the agent
+    (`exploration.settings.ExplorerSettings`) that belong to the method and override a mission's. It is optional, and
+    read with ``getattr``.
     """
 
     name: str

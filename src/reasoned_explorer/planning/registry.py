@@ -6,9 +6,11 @@ from typing import Any
 
 from reasoned_explorer.minds.context import Minds
 from reasoned_explorer.model import Fault, SettingsError
+from reasoned_explorer.planning.controls import LlmAsEvalMatched, echoing, shuffling
+from reasoned_explorer.planning.llm_mcts import LlmMcts, LlmMctsSettings
 from reasoned_explorer.planning.llm_rrt import LlmRrt, LlmRrtSettings
 from reasoned_explorer.planning.planner import Planner
-from reasoned_explorer.planning.without_models import FollowPaths, NearestFrontier
+from reasoned_explorer.planning.without_models import FollowPaths, NearestFrontier, ObjectDensity, RandomFrontier
 from reasoned_explorer.registry import Entry, Registry
 
 _HERE = "reasoned_explorer.planning.registry"
@@ -18,9 +20,24 @@ PLANNERS = Registry(
     "planners",
     (
         Entry("llm-rrt", f"{_HERE}:make_llm_rrt", "the paper's: imagined scenes beyond each frontier, scored"),
+        Entry(
+            "llm-rrt-authors",
+            f"{_HERE}:make_llm_rrt_authors",
+            "the authors' code: rollouts restart, checks afterwards one by one, straight legs",
+        ),
+        Entry("llm-mcts", f"{_HERE}:make_llm_mcts", "the paper's second baseline: tree search, call after call"),
         Entry("llm-as-eval", f"{_HERE}:make_llm_as_eval", "the evaluator scores each frontier's scene itself (L = 0)"),
         Entry("nearest-frontier", f"{_HERE}:make_nearest_frontier", "no model: the nearest frontier"),
         Entry("follow-paths", f"{_HERE}:make_follow_paths", "no model: where paths and pavements lead"),
+        Entry("object-density", f"{_HERE}:make_object_density", "no model: where most things stand close together"),
+        Entry("random", f"{_HERE}:make_random", "no model: a frontier by chance"),
+        Entry("llm-rrt-echo", f"{_HERE}:make_llm_rrt_echo", "control: llm-rrt, what is imagined is what is seen"),
+        Entry("llm-rrt-shuffled", f"{_HERE}:make_llm_rrt_shuffled", "control: llm-rrt, imagined from another view"),
+        Entry(
+            "llm-as-eval-matched",
+            f"{_HERE}:make_llm_as_eval_matched",
+            "control: llm-as-eval, each scene scored as often as llm-rrt scores",
+        ),
     ),
 )
 
@@ -70,6 +87,31 @@ def make_llm_rrt(
     return LlmRrt(minds, LlmRrtSettings(children, depth, include_own_score, depth_weight, restart))
 
 
+def make_llm_rrt_authors(minds: Minds, *, children: int = 3, depth: int = 2) -> Planner:
+    """Return LLM-RRT as the authors published it (their code at commit 868d1be), as far as a planner reaches.
+
+    A rollout begins where the one before began instead of where it ended; the checker is asked when planning is over,
+    one view after the other; a remote frontier is flown to straight. Their tree of length 1 has an expansion and one
+    rollout for each child: depth 2 here, where nothing restarts yet and the tree is LLM-RRT's.
+    """
+    settings = LlmRrtSettings(children, depth, restart=True)
+    agent = {"check_after_planning": True, "straight_legs": True}
+    return LlmRrt(minds, settings, name="llm-rrt-authors", explorer=agent)
+
+
+def make_llm_mcts(
+    minds: Minds,
+    *,
+    iterations: int = 10,
+    children: int = 3,
+    depth: int = 3,
+    exploration: float = 1.0,
+    visit_power: float = 3.0,
+) -> Planner:
+    """Return LLM-MCTS; the settings are those of `LlmMctsSettings`."""
+    return LlmMcts(minds, LlmMctsSettings(iterations, children, depth, exploration, visit_power))
+
+
 def make_llm_as_eval(minds: Minds) -> Planner:
     """Return LLM-as-Eval (Chen et al., 2023; the paper's first baseline): LLM-RRT with L = 0."""
     return LlmRrt(minds, LlmRrtSettings(depth=0), name="llm-as-eval")
@@ -83,3 +125,28 @@ def make_nearest_frontier(minds: Minds) -> Planner:  # noqa: ARG001 - every fact
 def make_follow_paths(minds: Minds) -> Planner:  # noqa: ARG001
     """Return the follow-paths planner."""
     return FollowPaths()
+
+
+def make_object_density(minds: Minds) -> Planner:  # noqa: ARG001
+    """Return the object-density planner."""
+    return ObjectDensity()
+
+
+def make_random(minds: Minds) -> Planner:
+    """Return the random planner; it draws by the minds' seed."""
+    return RandomFrontier(minds)
+
+
+def make_llm_rrt_echo(minds: Minds, *, children: int = 3, depth: int = 2) -> Planner:
+    """Return LLM-RRT with a visionary that echoes; see `EchoVisionary`."""
+    return LlmRrt(echoing(minds), LlmRrtSettings(children, depth), name="llm-rrt-echo")
+
+
+def make_llm_rrt_shuffled(minds: Minds, *, children: int = 3, depth: int = 2) -> Planner:
+    """Return LLM-RRT with a visionary whose answers belong to other views; see `ShuffledVisionary`."""
+    return LlmRrt(shuffling(minds), LlmRrtSettings(children, depth), name="llm-rrt-shuffled")
+
+
+def make_llm_as_eval_matched(minds: Minds, *, children: int = 3, depth: int = 2) -> Planner:
+    """Return LLM-as-Eval with as many evaluator calls as LLM-RRT of these settings has."""
+    return LlmAsEvalMatched(minds, LlmRrtSettings(children, depth))

@@ -1,13 +1,17 @@
 """Planners that ask no model: what a method that claims to reason must beat.
 
-They read of a scene only what a robot without a language model could know: whether the way ahead is blocked, and what
-kind of ground leads ahead.
+They read of a scene only what a robot without a language model could know: whether the way ahead is blocked, what kind
+of ground leads ahead, and how many things stand where.
 """
 
+from collections import Counter
 from collections.abc import Sequence
 
-from reasoned_explorer.minds.embedded.reading import read_scene
+from reasoned_explorer.minds.context import Minds
+from reasoned_explorer.minds.embedded.lexicon import concepts
+from reasoned_explorer.minds.embedded.reading import BACKGROUND, Mention, read_scene
 from reasoned_explorer.model import Goal, Scene
+from reasoned_explorer.model.draws import uniform
 from reasoned_explorer.planning.planner import FrontierScore, Plan
 
 EVEN_SCORE = 3.0
@@ -25,6 +29,15 @@ _PATH_SCORES = {
     "PARKING": 3.0,
 }
 _NO_PATH_SCORE = 2.8
+
+#: `ObjectDensity`: the score where nothing stands, what each thing in the fullest place adds, and at most how many
+#: count. The same band as `FollowPaths`' scores, and for the same reasons.
+_EMPTY_SCORE, _THING_SCORE, _MOST_THINGS = 2.8, 0.1, 6
+_NO_THINGS = frozenset({"area", "background", "building", "generic", "ground", "quality", "scene", "structure"})
+
+#: `RandomFrontier`: scores are drawn from so far below to so far above `EVEN_SCORE`, so that its mean step is that of
+#: `NearestFrontier`.
+_RANDOM_SPREAD = 0.3
 
 
 class NearestFrontier:
@@ -47,6 +60,53 @@ class FollowPaths:
     async def plan(self, goal: Goal, scenes: Sequence[Scene]) -> Plan:  # noqa: ARG002 - the protocol's
         """Return a score by the ground that leads ahead."""
         return Plan(tuple(_score(scene, _path_score(scene.text)) for scene in scenes))
+
+
+class ObjectDensity:
+    """Prefer frontiers where most things are mentioned close together, whatever they are and whatever is sought.
+
+    Two things stand close together where a caption names them at the same distance and on the same side. Each mention
+    counts once, "five trees" like "a tree"; ground, buildings and the background are no things.
+    """
+
+    name = "object-density"
+    label = "object-density [no model]"
+
+    async def plan(self, goal: Goal, scenes: Sequence[Scene]) -> Plan:  # noqa: ARG002 - the protocol's
+        """Return a score by the number of things in each scene's fullest place."""
+        return Plan(tuple(_score(scene, _density_score(scene.text)) for scene in scenes))
+
+
+class RandomFrontier:
+    """Every frontier's score is drawn, keyed by the mission's seed and the scene's key.
+
+    Args:
+        minds: Their seed is taken; they are not asked.
+    """
+
+    name = "random"
+    label = "random [no model]"
+
+    def __init__(self, minds: Minds) -> None:
+        self._seed = minds.seed
+
+    async def plan(self, goal: Goal, scenes: Sequence[Scene]) -> Plan:  # noqa: ARG002 - the protocol's
+        """Return a random score for each scene, near that of `NearestFrontier`."""
+        return Plan(tuple(_score(scene, self._draw(scene)) for scene in scenes))
+
+    def _draw(self, scene: Scene) -> float:
+        return EVEN_SCORE + _RANDOM_SPREAD * (2.0 * uniform(self._seed, "random planner", *scene.key) - 1.0)
+
+
+def _density_score(text: str) -> float:
+    places = Counter((m.distance, m.side) for m in read_scene(text).mentions if _is_thing(m))
+    return _EMPTY_SCORE + _THING_SCORE * min(_MOST_THINGS, max(places.values(), default=0))
+
+
+def _is_thing(mention: Mention) -> bool:
+    if mention.negated or mention.distance == BACKGROUND:
+        return False
+    return mention.concept is None or concepts()[mention.concept].kind not in _NO_THINGS
 
 
 def _path_score(text: str) -> float:
