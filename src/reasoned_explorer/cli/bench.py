@@ -28,6 +28,7 @@ from reasoned_explorer.evaluation.bench.tables import (
     difference_sheet,
     main_sheet,
     more_sheet,
+    paper_sheets,
 )
 from reasoned_explorer.evaluation.methods import methods
 from reasoned_explorer.evaluation.mission import MissionSettings
@@ -248,7 +249,7 @@ def sheets_of(store: RunStore) -> list[Sheet]:
             sheets.append(city_sheet(results))
     if not sheets:
         raise InputError("run", [Fault("no mission is finished", "at least one", "go on with rex bench --resume")])
-    return sheets
+    return [*sheets, *paper_sheets()]
 
 
 def compare_runs(first: str, second: str) -> None:

@@ -7,6 +7,9 @@ import typer
 
 from reasoned_explorer.cli.answers import answering
 
+ablate_app = typer.Typer(
+    help="The paper's ablations: level 1, T_max 15 minutes, captions without error.", no_args_is_help=True
+)
 Run = Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a run of rex bench.")]
 
 
@@ -15,6 +18,7 @@ def add_commands(app: typer.Typer) -> None:
     app.command()(bench)
     app.command()(compare)
     app.command("export")(export_)
+    app.add_typer(ablate_app, name="ablate")
 
 
 @answering
@@ -126,3 +130,75 @@ def export_(
     from reasoned_explorer.cli.bench import export_run
 
     export_run(run, path)
+
+
+_Split = Annotated[str, typer.Option(help="mini or full; only its level 1 is run.")]
+_Worlds = Annotated[list[str] | None, typer.Option("--world", help="A split of these worlds instead; may be repeated.")]
+_Vehicle = Annotated[str, typer.Option(help="Vehicle profiles with commas.")]
+_Latency = Annotated[str, typer.Option(help="How long modelled calls take.")]
+_Workers = Annotated[int | None, typer.Option(help="Processes on this machine.")]
+_Out = Annotated[Path | None, typer.Option(help="Folder of the run.")]
+_Resume = Annotated[Path | None, typer.Option(metavar="RUN", help="Go on with a run that was stopped.")]
+
+
+@ablate_app.command("depth")
+@answering
+def ablate_depth_(
+    *,
+    depths: Annotated[str, typer.Option(help="L, with commas.")] = "0,1,2,3,4",
+    split: _Split = "full",
+    world: _Worlds = None,
+    minds: Annotated[str, typer.Option(help="Who imagines, scores and checks.")] = "embedded",
+    vehicle: _Vehicle = "drone",
+    latency: _Latency = "gpt-2023",
+    workers: _Workers = None,
+    out: _Out = None,
+    resume: _Resume = None,
+) -> None:
+    """How many steps to think into the future (the paper's Table III)."""
+    from reasoned_explorer.cli.ablate import ablate_depth
+    from reasoned_explorer.cli.bench import BenchOptions
+
+    options = BenchOptions(
+        split=split,
+        worlds=tuple(world or ()),
+        minds=minds,
+        vehicle=vehicle,
+        latency=latency,
+        workers=workers,
+        out=out,
+        resume=resume,
+    )
+    ablate_depth(options, depths)
+
+
+@ablate_app.command("minds")
+@answering
+def ablate_minds_(
+    *,
+    visionaries: Annotated[str, typer.Option(help="Minds that imagine, with commas.")] = "embedded,embedded-unknowing",
+    evaluators: Annotated[str, typer.Option(help="Minds that score, with commas.")] = "embedded,embedded-unknowing",
+    checker: Annotated[str, typer.Option(help="Who notices the goal.")] = "embedded",
+    split: _Split = "full",
+    world: _Worlds = None,
+    vehicle: _Vehicle = "drone",
+    latency: _Latency = "gpt-2023",
+    workers: _Workers = None,
+    out: _Out = None,
+    resume: _Resume = None,
+) -> None:
+    """Which minds to imagine and to score with (the paper's Table IV, each evaluator's mean score beside it)."""
+    from reasoned_explorer.cli.ablate import ablate_minds
+    from reasoned_explorer.cli.bench import BenchOptions
+
+    options = BenchOptions(
+        split=split,
+        worlds=tuple(world or ()),
+        minds=checker,
+        vehicle=vehicle,
+        latency=latency,
+        workers=workers,
+        out=out,
+        resume=resume,
+    )
+    ablate_minds(options, visionaries, evaluators)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from reasoned_explorer.evaluation.metrics import Metric, MetricTable, aggregate, compare
+from reasoned_explorer.evaluation.paper import PAPER_NOTE, PAPER_TABLES
 from reasoned_explorer.evaluation.row import MissionRow
 from reasoned_explorer.evaluation.statistics import holm
 from reasoned_explorer.model import Fault, InputError
@@ -255,6 +256,19 @@ def city_sheet(results: Results) -> Sheet:
             cells.append(figures)
         lines.append((name, *cells))
     return Sheet("SR / OSR / SPL by city", ("planner", *cities), tuple(lines))
+
+
+def paper_sheets() -> list[Sheet]:
+    """Return the paper's main table, by level, as a table of its own."""
+    table = PAPER_TABLES[0]
+    lines = []
+    for name, values in table.rows:
+        for start, level in enumerate(("L1", "L2", "L3", "L4", "all")):
+            cells = ["–" if value is None else short(value) for value in values[start::5]]
+            lines.append((level, name, *cells))
+    lines.sort(key=lambda line: line[0])
+    title = f"The paper's table {table.number}: {table.title}"
+    return [Sheet(title, ("level", "method", "SR", "OSR", "SPL", "CASR"), tuple(lines), (PAPER_NOTE,))]
 
 
 def _mean(values: Iterable[float]) -> float:
