@@ -1,0 +1,71 @@
+from dataclasses import replace
+
+import pytest
+
+from reasoned_explorer.model import InputError
+from reasoned_explorer.task.split import BANDS_M, Split
+from reasoned_explorer.task.splitting import Dealing, ceiling_casr, generated_places, make_split, places_of_worlds
+
+
+@pytest.fixture(scope="module")
+def split() -> Split:
+    return make_split("here", places_of_worlds(["plaza:4@400"]), per_cell=1, dealing=Dealing(1))
+
+
+def test_a_split_is_the_same_after_it_was_written_down(split: Split) -> None:
+    again = Split.from_dict(split.as_dict())
+    assert again == split
+    assert again.digest == split.digest
+
+
+def test_the_hash_tells_what_decides_a_mission(split: Split) -> None:
+    first = split.episodes[0]
+    later = replace(first, episode=replace(first.episode, seed=first.episode.seed + 1))
+    assert replace(split, episodes=(later, *split.episodes[1:])).digest != split.digest
+    assert replace(split, world_digests={"plaza:4@400": "another world"}).digest != split.digest
+
+
+def test_where_a_file_lies_is_no_part_of_the_hash(split: Split) -> None:
+    moved = replace(split, places=tuple(replace(place, source="elsewhere.osm") for place in split.places))
+    assert moved.digest == split.digest
+
+
+def test_every_episode_lies_within_its_band(split: Split) -> None:
+    for item in split.episodes:
+        low_m, high_m = BANDS_M[item.band]
+        assert low_m <= item.episode.reference_length_m <= high_m
+        assert item.blind_rate <= 0.10
+
+
+def test_a_split_can_be_cut_down_to_levels(split: Split) -> None:
+    only = split.only(levels=[1, 3])
+    assert {item.episode.spec.level for item in only.episodes} == {1, 3}
+    assert only.name == "here/L13"
+    with pytest.raises(InputError, match="levels 2"):
+        split.only(levels=[1]).only(levels=[2])
+
+
+def test_what_is_said_of_a_split(split: Split) -> None:
+    text = "\n".join(split.lines())
+    assert f"here v1 [{split.digest[:12]}]" in text
+    assert "success of a blind declaration" in text
+
+
+@pytest.mark.parametrize("data", [{}, {"name": "x"}, {"name": "x", "seed": "one", "places": 3}])
+def test_what_is_no_split_is_refused(data: dict[str, object]) -> None:
+    with pytest.raises(InputError, match="a split as"):
+        Split.from_dict(data)
+
+
+def test_the_ceiling_is_that_of_who_knows_the_way(split: Split) -> None:
+    slow, fast = ceiling_casr(split, speed_mps=0.2), ceiling_casr(split, speed_mps=3.0)
+    mean_m = sum(item.episode.reference_length_m for item in split.episodes) / len(split.episodes)
+    assert fast == pytest.approx(1.0 - mean_m / 3.0 / 1800.0)
+    assert 0.0 <= slow < fast < 1.0
+
+
+def test_built_in_splits_have_every_district_as_often() -> None:
+    places, per_cell, _ = generated_places("full")
+    districts = [place.district for place in places]
+    assert {districts.count(name) for name in districts} == {5}
+    assert len(places) * per_cell * 12 >= 400

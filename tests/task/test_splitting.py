@@ -1,0 +1,87 @@
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from reasoned_explorer.model import InputError, SettingsError, StartError, WorldError
+from reasoned_explorer.task.split import BANDS_M, LEVELS, Place
+from reasoned_explorer.task.splitting import Dealing, generated_places, make_split, open_place, places_of_worlds
+
+SHARED = Path(__file__).parents[2] / ".." / "shared" / "osm"
+PLAZA = Place("plaza:4@400", "plaza:4@400", district="plaza")
+PARK = Place("park:6@400", "park:6@400", district="park")
+#: A street and a bench: hardly anything to look for.
+BARE = Place("residential:1@100", "residential:1@100", district="residential")
+
+
+def test_a_cell_deals_the_same_whatever_else_is_asked_for() -> None:
+    dealing = Dealing(9)
+    everything = {(level, band): 1 for level in LEVELS for band in BANDS_M}
+    alone = dealing.deal(PLAZA, {(2, "middle"): 1}).episodes
+    among = [item for item in dealing.deal(PLAZA, everything).episodes if item.episode.spec.level == 2]
+    assert alone == tuple(item for item in among if item.band == "middle")
+
+
+def test_a_split_is_balanced_over_levels_and_distances() -> None:
+    split = make_split("two", [PLAZA, PARK], per_cell=1, dealing=Dealing(2))
+    counts = Counter((item.episode.spec.level, item.band) for item in split.episodes)
+    assert set(counts.values()) == {2}
+    assert len({item.episode.id for item in split.episodes}) == len(split.episodes)
+
+
+def test_what_one_place_lacks_is_dealt_by_another() -> None:
+    split = make_split("lacking", [BARE, PLAZA], per_cell=1, dealing=Dealing(2))
+    counts = Counter((item.episode.spec.level, item.band) for item in split.episodes)
+    from_plaza = Counter((item.episode.spec.level, item.band) for item in split.episodes if item.place == PLAZA.name)
+    assert max(from_plaza.values()) == 2
+    assert all(counts[cell] == 2 for cell in from_plaza)
+
+
+def test_the_order_in_which_places_are_dealt_changes_nothing() -> None:
+    def backwards(deal, places, cells):  # type: ignore[no-untyped-def]
+        made = [deal(place, wanted) for place, wanted in reversed(list(zip(places, cells, strict=True)))]
+        return made[::-1]
+
+    one = make_split("s", [PLAZA, PARK], per_cell=1, dealing=Dealing(2))
+    other = make_split("s", [PLAZA, PARK], per_cell=1, dealing=Dealing(2), map_places=backwards)
+    assert one == other
+
+
+def test_starts_are_fit_for_every_body() -> None:
+    from reasoned_explorer.simulation.vehicle import check_start
+    from reasoned_explorer.vehicles.registry import VEHICLES, vehicle_profile
+
+    split = make_split("s", [PLAZA], per_cell=1, dealing=Dealing(2))
+    atlas = open_place(PLAZA)
+    for item in split.episodes:
+        for name in VEHICLES.names():
+            check_start(atlas, vehicle_profile(name), item.episode.start)
+
+
+@pytest.mark.skipif(not SHARED.is_dir(), reason="no real places beside the checkout")
+def test_a_real_place_is_cut_into_neighbourhoods() -> None:
+    places = places_of_worlds([str(SHARED / "helsinki-centre.osm.pbf")])
+    assert [place.name for place in places] == ["helsinki-centre#0", "helsinki-centre#1"]
+    assert {place.city for place in places} == {"helsinki-centre"}
+    for place in places:
+        world = open_place(place).world
+        assert world.bounds.width_m * world.bounds.height_m == pytest.approx(0.85e6, rel=0.1)
+
+
+@pytest.mark.skipif(not SHARED.is_dir(), reason="no real places beside the checkout")
+def test_a_neighbourhood_without_anything_deals_nothing() -> None:
+    sea = Place("sea", str(SHARED / "monaco-2025.osm.pbf"), (7.4329, 43.7232, 7.4447, 43.7331), "monaco")
+    assert Dealing(1).deal(sea, {(1, "near"): 1}).episodes == ()
+    with pytest.raises(StartError, match="no episode can be posed in sea"):
+        make_split("s", [sea], per_cell=1, dealing=Dealing(1))
+
+
+def test_what_cannot_be_made_is_refused() -> None:
+    with pytest.raises(SettingsError, match="one of mini, full"):
+        generated_places("huge")
+    with pytest.raises(SettingsError, match="each world once"):
+        places_of_worlds(["park:1@200", "park:1@200"])
+    with pytest.raises(WorldError):
+        places_of_worlds(["nowhere.osm.pbf"])
+    with pytest.raises(InputError, match="0 episodes a cell"):
+        make_split("s", [PLAZA], per_cell=0, dealing=Dealing(1))
