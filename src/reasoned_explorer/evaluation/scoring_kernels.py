@@ -23,11 +23,12 @@ def dtw(first: Floats, second: Floats) -> float:
     sums = np.full(second.shape[0] + 1, np.inf)
     sums[0] = 0.0
     for i in range(first.shape[0]):
-        # ``before`` is what stood to the left in the row above.
-        before, sums[0] = sums[0], np.inf
+        # ``before`` is what stood to the left in the row above, ``left`` what stands there now.
+        before, left, sums[0] = sums[0], np.inf, np.inf
         for j in range(second.shape[0]):
             dx, dy = first[i, 0] - second[j, 0], first[i, 1] - second[j, 1]
-            least = min(before, sums[j], sums[j + 1])
-            before = sums[j + 1]
-            sums[j + 1] = least + math.sqrt(dx * dx + dy * dy)
+            above = sums[j + 1]
+            least = before if before < above else above
+            left = (left if left < least else least) + math.sqrt(dx * dx + dy * dy)
+            before, sums[j + 1] = above, left
     return float(sums[second.shape[0]])
