@@ -152,7 +152,7 @@ def sign_flip_test(differences: Sequence[float] | Floats, *, seed: int) -> float
 
 
 def holm(p_values: Mapping[str, float]) -> dict[str, float]:
-    """Return the p-values of a family of comparisons, adjusted so that any false one comes up with at most its p.
+    """Return the p-values of a family of comparisons, adjusted: below a level α none is false but with a chance of α.
 
     The smallest of m is multiplied by m, the next by m − 1, …; none is below the one before it, none above 1.
 
