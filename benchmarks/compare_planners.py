@@ -33,8 +33,9 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from reasoned_explorer.evaluation.metrics import MetricTable, MissionScore, by_level, compare
+from reasoned_explorer.evaluation.metrics import MetricTable, by_level, compare
 from reasoned_explorer.evaluation.mission import Mission, MissionSettings, traveller_of
+from reasoned_explorer.evaluation.scoring import MissionScore
 from reasoned_explorer.model import LegOutcome
 from reasoned_explorer.model.draws import key_of
 from reasoned_explorer.model.errors import ReasonedExplorerError

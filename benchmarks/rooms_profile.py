@@ -15,7 +15,7 @@ _ROOMS = (
     ("evaluation/mission.py:Mission.header", "record"),
     ("evaluation/mission.py:Mission._summary", "judging"),
     ("evaluation/mission.py:Mission.__init__", "making ready"),
-    ("evaluation/metrics.py", "judging"),
+    ("evaluation/scoring", "judging"),
     ("evaluation/oracle.py", "minds"),
     ("task/", "judging"),
     ("simulation/eyes", "eyes"),

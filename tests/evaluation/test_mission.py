@@ -5,7 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from reasoned_explorer.evaluation.mission import Mission, MissionSettings, run_mission, traveller_of
+from reasoned_explorer.evaluation.mission import (
+    Mission,
+    MissionSettings,
+    looks_of,
+    run_mission,
+    track_of,
+    traveller_of,
+)
 from reasoned_explorer.evaluation.record_file import read_record
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
@@ -180,3 +187,26 @@ def test_a_record_is_not_written_over(tmp_path: Path) -> None:
     run_mission("Find me a bench", courtyard(), settings, start=Pose(90.0, 45.0), folder=tmp_path)
     with pytest.raises(RecordError):
         run_mission("Find me a bench", courtyard(), settings, start=Pose(90.0, 45.0), folder=tmp_path)
+
+
+def test_looks_lie_on_the_track_where_the_agent_looked(plaza: Atlas) -> None:
+    record = run_mission("Find me a public toilet", plaza, MissionSettings(seed=4)).record
+    start = Pose(*record.header.start)
+    track = track_of(start, list(record.steps))
+    looks = looks_of(list(record.steps))
+    looked = [step for step in record.steps if step.views]
+    assert len(looks) == len(looked) > 3
+    for look, step in zip(looks, looked, strict=True):
+        at = track[look.point]
+        # The filter knows where it is to decimetres.
+        assert at.x_m == pytest.approx(step.pose[0], abs=0.5)
+        assert at.y_m == pytest.approx(step.pose[1], abs=0.5)
+        assert look.headings_rad == tuple(view.heading_rad for view in step.views)
+
+
+def test_a_mission_that_is_found_by_sight_was_seen(plaza: Atlas) -> None:
+    score = run_mission("Find me a bench", plaza, replace(ORACLE, seed=2, explorer=ALL_AROUND)).score
+    assert score.success
+    assert score.oracle_seen
+    assert score.soft_spl == score.spl > 0.0
+    assert score.ndtw is None

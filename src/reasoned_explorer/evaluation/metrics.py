@@ -1,144 +1,78 @@
-"""What missions score. Pure functions: the same outcomes give the same table, to the last digit.
+"""Tables of many scores, with intervals: pure functions, the same scores give the same table, to the last digit.
 
-- **SR**, success rate: declared in place and in time, with the goal's conditions kept.
-- **OSR**, oracle success rate: at some moment of the track a declaration would have succeeded.
-- **SPL**, success weighted by path length (Anderson et al., "On evaluation of embodied navigation agents", 2018,
-  arXiv 1807.06757): mean of S · l / max(p, l), l the shortest compliant way to success, p the way that was travelled.
+- **SR**, **OSR**, **OSR-seen**: shares of successes, oracle successes, and oracle successes that could be noticed.
+- **SPL**, **soft-SPL**: means over all missions.
 - **CASR**, computationally adjusted success rate (paper, section V-A): SR · mean(1 − (CT + TT)/T_max), the mean taken
   over all missions; a mission over time is a failure and has 0 in the mean.
 - **CASR per mission**: mean(S · (1 − (CT + TT)/T_max)). The product of means above rewards a fast false halt: a failure
   that ends at once raises its second factor. This one does not; both stand in every table.
 - **CASR paper-style**: the formula of the paper with only the planner's seconds as CT, as the authors' log counts them.
+- **SR at R m**: SR at other success radii.
+- **nDTW**: mean over the level-3 missions that have a reference way.
+- **CT**, **TT**, **path length**: means over all missions; **distance to goal**: over those that have one.
 
-Times: CT, every second that the robot waits for a decision, captions and checks included; TT, travelling.
+What one mission scores stands in `scoring`, how intervals and tests work in `statistics`, both in ``docs/metrics.md``.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from statistics import NormalDist
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from reasoned_explorer.model import Fault, InputError, TrackPoint
-from reasoned_explorer.model.draws import key_of
-
-if TYPE_CHECKING:
-    # Reading a table must not load the world.
-    from reasoned_explorer.task.judge import Judge
-
-#: Resamples of a bootstrap.
-RESAMPLES = 2000
-_TIME_SLACK_S = 1e-6
+from reasoned_explorer.evaluation.scoring import MissionScore
+from reasoned_explorer.evaluation.statistics import (
+    bootstrap_sums,
+    group_sums,
+    groups_of,
+    percentile_interval,
+    sign_flip_test,
+    wilson_interval,
+)
+from reasoned_explorer.model import Fault, InputError
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Places = Mapping[str, str]
+# A bound that is less than this above the baseline leaves no headroom: sums differ by rounding.
+_NO_ROOM = 1e-9
+
+Column = Callable[[MissionScore], float]
 
 
-@dataclass(frozen=True, slots=True)
-class MissionOutcome:
-    """What came of one mission.
-
-    Attributes:
-        mission_id: Of its episode.
-        level: Of its goal, 1 to 4.
-        vehicle: Name of the vehicle profile; profiles are never pooled in one number.
-        declared: The agent said "Found Goal".
-        in_place: The judge's answer to where the mission ended, declared or not, the way there included.
-        in_place_at: The same at other radii: (metres, answer).
-        oracle_success: The judge's answer to the whole track.
-        path_length_m: Travelled, metres.
-        reference_length_m: The shortest compliant way to success, metres; infinity where there is none.
-        computing_s: CT, seconds.
-        planner_computing_s: The planner's share of CT, seconds.
-        travelling_s: TT, seconds.
-        time_limit_s: T_max, seconds.
-        distance_to_goal_m: From the end to the nearest thing that satisfies, metres; infinity where there is none.
-    """
-
-    mission_id: str
-    level: int
-    vehicle: str
-    declared: bool
-    in_place: bool
-    oracle_success: bool
-    path_length_m: float
-    reference_length_m: float
-    computing_s: float
-    travelling_s: float
-    planner_computing_s: float = 0.0
-    time_limit_s: float = 1800.0
-    distance_to_goal_m: float = math.inf
-    in_place_at: tuple[tuple[float, bool], ...] = ()
-
-    def __post_init__(self) -> None:
-        """Check the values.
-
-        Raises:
-            InputError: With everything that is wrong.
-        """
-        faults = []
-        if self.level not in {1, 2, 3, 4}:
-            faults.append(Fault(f"level is {self.level}", "1, 2, 3 or 4"))
-        for name in ("path_length_m", "computing_s", "travelling_s", "planner_computing_s"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0.0):
-                faults.append(Fault(f"{name} is {value}", "a finite number, 0 or more"))
-        for name in ("reference_length_m", "distance_to_goal_m"):
-            value = getattr(self, name)
-            if not value >= 0.0:
-                faults.append(Fault(f"{name} is {value}", "0 or more; infinity where there is none"))
-        if not (math.isfinite(self.time_limit_s) and self.time_limit_s > 0.0):
-            faults.append(Fault(f"time_limit_s is {self.time_limit_s}", "a finite number above 0"))
-        if self.planner_computing_s > self.computing_s + _TIME_SLACK_S:
-            what = f"planner_computing_s is {self.planner_computing_s}, computing_s {self.computing_s}"
-            faults.append(Fault(what, "a share of computing_s"))
-        if faults:
-            raise InputError(f"outcome of mission {self.mission_id!r}", faults)
+def _success(item: MissionScore) -> float:
+    return float(item.success)
 
 
-@dataclass(frozen=True, slots=True)
-class MissionScore:
-    """What one mission scores.
+def _success_at(radius_m: float) -> Column:
+    return lambda item: float(dict(item.success_at)[radius_m])
 
-    Attributes:
-        mission_id: Of its episode.
-        level: Of its goal.
-        vehicle: Name of the vehicle profile.
-        success: Declared, in place, and in time.
-        success_at: The same at other radii: (metres, success).
-        oracle_success: At some moment a declaration would have succeeded.
-        over_time: CT + TT exceeded T_max.
-        spl: S · l / max(p, l), in [0, 1].
-        time_factor: 1 − (CT + TT)/T_max, in [0, 1]; 0 when over time.
-        planner_time_factor: The same with the planner's CT only.
-        casr: S · time_factor: this mission's term of CASR per mission.
-        path_length_m: Travelled, metres.
-        reference_length_m: The shortest compliant way, metres; may be infinite.
-        computing_s: CT.
-        travelling_s: TT.
-        time_limit_s: T_max.
-        distance_to_goal_m: At the end, metres; may be infinite.
-    """
 
-    mission_id: str
-    level: int
-    vehicle: str
-    success: bool
-    success_at: tuple[tuple[float, bool], ...]
-    oracle_success: bool
-    over_time: bool
-    spl: float
-    time_factor: float
-    planner_time_factor: float
-    casr: float
-    path_length_m: float
-    reference_length_m: float
-    computing_s: float
-    travelling_s: float
-    time_limit_s: float
-    distance_to_goal_m: float
+def _finite(value: float | None) -> float:
+    """Return a value, or NaN where a mission has none."""
+    return value if value is not None and math.isfinite(value) else math.nan
+
+
+#: A figure is the mean of a column over the missions that have it, or the product of the means of two.
+_FIGURES: Mapping[str, tuple[Column, ...]] = {
+    "SR": (_success,),
+    "OSR": (lambda item: float(item.oracle_success),),
+    "OSR-seen": (lambda item: float(item.oracle_seen),),
+    "SPL": (lambda item: item.spl,),
+    "soft-SPL": (lambda item: item.soft_spl,),
+    "CASR": (_success, lambda item: item.time_factor),
+    "CASR per mission": (lambda item: item.casr,),
+    "CASR paper-style": (_success, lambda item: item.planner_time_factor),
+    "nDTW": (lambda item: _finite(item.ndtw),),
+    "CT": (lambda item: item.computing_s,),
+    "TT": (lambda item: item.travelling_s,),
+    "path length": (lambda item: item.path_length_m,),
+    "distance to goal": (lambda item: _finite(item.distance_to_goal_m),),
+}
+_SHARES = ("SR", "OSR", "OSR-seen")
+#: What `compare`, `headroom_closed` and `paired_differences` know: figures that every mission has, more is better.
+COMPARED = ("SR", "OSR", "OSR-seen", "SPL", "soft-SPL", "CASR", "CASR per mission", "CASR paper-style")
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,7 +85,9 @@ class Metric:
         low: Lower end of the interval.
         high: Upper end.
         count: Missions behind it.
-        interval: How the interval was made: ``"Wilson"`` or ``"bootstrap"``.
+        interval: How the interval was made: ``"Wilson"``, ``"bootstrap"`` (over missions), ``"clustered bootstrap"``
+            (over places), or ``"none"`` where there is no value.
+        p: Of a difference, by a paired permutation test; else None. It is not yet corrected for many comparisons.
     """
 
     name: str
@@ -160,6 +96,7 @@ class Metric:
     high: float
     count: int
     interval: str
+    p: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,164 +124,39 @@ class MetricTable:
         raise KeyError(name)
 
 
-def outcome_of(
-    track: Sequence[TrackPoint],
-    judge: "Judge",
-    *,
-    mission_id: str,
-    vehicle: str,
-    declared: bool,
-    computing_s: float,
-    travelling_s: float,
-    planner_computing_s: float = 0.0,
-    time_limit_s: float = 1800.0,
-    reference_length_m: float | None = None,
-) -> MissionOutcome:
-    """Return what came of a mission, from its track of true positions and the judge of its goal.
-
-    Args:
-        track: Oldest first, at least the start.
-        judge: Of the mission's goal and world.
-        mission_id: Of its episode.
-        vehicle: Name of the vehicle profile.
-        declared: The agent said "Found Goal".
-        computing_s: CT, seconds.
-        travelling_s: TT, seconds.
-        planner_computing_s: The planner's share of CT, seconds.
-        time_limit_s: T_max, seconds.
-        reference_length_m: Where it is known already; else the judge measures it.
-
-    Raises:
-        InputError: If a number is out of range or the track is empty.
-    """
-    report = judge.review(track)
-    if reference_length_m is None:
-        reference_length_m = judge.reference_length_m((track[0].x_m, track[0].y_m))
-    return MissionOutcome(
-        mission_id=mission_id,
-        level=judge.spec.level,
-        vehicle=vehicle,
-        declared=declared,
-        in_place=report.success,
-        in_place_at=tuple((radius_m, report.success_at(radius_m)) for radius_m, _ in report.end.at_radius),
-        oracle_success=report.oracle_success,
-        path_length_m=report.length_m,
-        reference_length_m=reference_length_m,
-        computing_s=computing_s,
-        travelling_s=travelling_s,
-        planner_computing_s=planner_computing_s,
-        time_limit_s=time_limit_s,
-        distance_to_goal_m=report.end.nearest_m,
-    )
-
-
-def spl_of(*, success: bool, path_length_m: float, reference_length_m: float) -> float:
-    """Return S · l / max(p, l), in [0, 1].
-
-    Where the formula says nothing: 0/0 (started in place, declared without a step) is 1; a success without a reference
-    way (l infinite: the judge knows no way, the robot found one) is 0, the lower bound, and is counted in the table.
-    """
-    if not success or math.isinf(reference_length_m):
-        return 0.0
-    longest_m = max(path_length_m, reference_length_m)
-    return 1.0 if longest_m == 0.0 else reference_length_m / longest_m
-
-
-def score(outcome: MissionOutcome) -> MissionScore:
-    """Return what a mission scores. Exactly T_max is still in time, and its time factor is 0."""
-    elapsed_s = outcome.computing_s + outcome.travelling_s
-    over_time = elapsed_s > outcome.time_limit_s + _TIME_SLACK_S
-    counts = outcome.declared and not over_time
-    success = counts and outcome.in_place
-    time_factor = _time_factor(elapsed_s, outcome.time_limit_s, over_time=over_time)
-    planner_s = outcome.planner_computing_s + outcome.travelling_s
-    return MissionScore(
-        mission_id=outcome.mission_id,
-        level=outcome.level,
-        vehicle=outcome.vehicle,
-        success=success,
-        success_at=tuple((radius_m, counts and answer) for radius_m, answer in outcome.in_place_at),
-        # Who succeeded was in place at the last moment of the track.
-        oracle_success=outcome.oracle_success or success,
-        over_time=over_time,
-        spl=spl_of(success=success, path_length_m=outcome.path_length_m, reference_length_m=outcome.reference_length_m),
-        time_factor=time_factor,
-        planner_time_factor=_time_factor(planner_s, outcome.time_limit_s, over_time=over_time),
-        casr=time_factor if success else 0.0,
-        path_length_m=outcome.path_length_m,
-        reference_length_m=outcome.reference_length_m,
-        computing_s=outcome.computing_s,
-        travelling_s=outcome.travelling_s,
-        time_limit_s=outcome.time_limit_s,
-        distance_to_goal_m=outcome.distance_to_goal_m,
-    )
-
-
-def aggregate(scores: Sequence[MissionScore], *, seed: int = 0, confidence: float = 0.95) -> MetricTable:
+def aggregate(
+    scores: Sequence[MissionScore], *, places: Places | None = None, seed: int = 0, confidence: float = 0.95
+) -> MetricTable:
     """Return the table of a set of missions.
 
-    Intervals: Wilson's for SR and OSR (Wilson 1927; right for few missions and near 0 and 1), percentile bootstrap over
-    missions for the others (Efron 1979; both factors of CASR are drawn together).
+    Intervals: with the places of the missions given, and at least two of them, a percentile bootstrap that draws places
+    as a whole. Else missions are drawn, and shares (SR, OSR, OSR-seen, SR at other radii) have Wilson's interval.
+    Shares have it, too, where all resamples are the same, as with no success at all: a bootstrap of what never varies
+    would claim certainty. Both factors of CASR are drawn together.
 
     Args:
         scores: At least one; the order does not matter, ids must differ unless missions were repeated.
+        places: Where each mission took place, by its id; None where missions are independent.
         seed: Of the bootstrap.
         confidence: Of the intervals, in (0, 1).
 
     Raises:
-        InputError: If there is no mission, or vehicles or time limits differ: these are never pooled.
+        InputError: If there is no mission, one has no place, or vehicles or time limits differ: these are never pooled.
     """
     listed = _checked(scores, confidence)
-    success = np.asarray([item.success for item in listed], dtype=np.float64)
-    columns = {
-        "SPL": np.asarray([item.spl for item in listed]),
-        "CASR per mission": np.asarray([item.casr for item in listed]),
-        "CT": np.asarray([item.computing_s for item in listed]),
-        "TT": np.asarray([item.travelling_s for item in listed]),
-        "path length": np.asarray([item.path_length_m for item in listed]),
-    }
-    draws = _draws(len(listed), seed)
-    rate_metrics = [
-        _share("SR", [item.success for item in listed], confidence),
-        _share("OSR", [item.oracle_success for item in listed], confidence),
-    ]
-    mean_metrics = [
-        _metric(name, float(np.mean(values)), np.mean(values[draws], axis=1), len(listed), confidence)
-        for name, values in columns.items()
-    ]
-    products = [
-        ("CASR", np.asarray([item.time_factor for item in listed])),
-        ("CASR paper-style", np.asarray([item.planner_time_factor for item in listed])),
-    ]
-    casr_metrics = [
-        _metric(
-            name,
-            float(np.mean(success) * np.mean(factor)),
-            np.mean(success[draws], axis=1) * np.mean(factor[draws], axis=1),
-            len(listed),
-            confidence,
-        )
-        for name, factor in products
-    ]
-    radii = sorted({radius_m for item in listed for radius_m, _ in item.success_at})
-    at_radius = [
-        _share(f"SR at {radius_m:g} m", [dict(item.success_at)[radius_m] for item in listed], confidence)
-        for radius_m in radii
-        if all(radius_m in dict(item.success_at) for item in listed)
-    ]
-    spl, casr_each, *rest = mean_metrics
+    radii = sorted(set.intersection(*({radius_m for radius_m, _ in item.success_at} for item in listed)))
+    at_radius = {f"SR at {radius_m:g} m": (_success_at(radius_m),) for radius_m in radii}
+    names = list(_FIGURES)
+    before = names.index("nDTW")
+    figures = {name: _FIGURES[name] for name in names[:before]}
+    figures |= at_radius | {name: _FIGURES[name] for name in names[before:]}
+    shares = {*_SHARES, *at_radius}
     return MetricTable(
         vehicle=listed[0].vehicle,
         count=len(listed),
-        metrics=(
-            *rate_metrics,
-            spl,
-            casr_metrics[0],
-            casr_each,
-            casr_metrics[1],
-            *at_radius,
-            *rest,
-            _distance(listed, seed, confidence),
+        metrics=tuple(
+            _metric(name, columns, listed, places=places, seed=seed, confidence=confidence, is_share=name in shares)
+            for name, columns in figures.items()
         ),
         unreachable=sum(math.isinf(item.reference_length_m) for item in listed),
         confidence=confidence,
@@ -352,7 +164,7 @@ def aggregate(scores: Sequence[MissionScore], *, seed: int = 0, confidence: floa
 
 
 def by_level(
-    scores: Sequence[MissionScore], *, seed: int = 0, confidence: float = 0.95
+    scores: Sequence[MissionScore], *, places: Places | None = None, seed: int = 0, confidence: float = 0.95
 ) -> dict[int | None, MetricTable]:
     """Return a table for each level that there is, and one for all missions under None.
 
@@ -362,90 +174,193 @@ def by_level(
     levels: list[int | None] = [*sorted({item.level for item in scores}), None]
     return {
         level: aggregate(
-            [item for item in scores if level is None or item.level == level], seed=seed, confidence=confidence
+            [item for item in scores if level is None or item.level == level],
+            places=places,
+            seed=seed,
+            confidence=confidence,
         )
         for level in levels
     }
 
 
 def compare(
-    first: Sequence[MissionScore], second: Sequence[MissionScore], *, seed: int = 0, confidence: float = 0.95
+    first: Sequence[MissionScore],
+    second: Sequence[MissionScore],
+    *,
+    places: Places | None = None,
+    seed: int = 0,
+    confidence: float = 0.95,
 ) -> MetricTable:
     """Return by how much the first method is better than the second on the same missions.
 
     Paired: missions with the same id are drawn together, so that what they have in common (an easy world, a far goal)
-    does not blur the difference. Differences of SR, OSR, SPL, CASR and CASR per mission, with bootstrap intervals.
+    does not blur the difference. Differences of `COMPARED`, with bootstrap intervals as in `aggregate`, and with the p
+    of a permutation test in which the two methods are swapped, place by place (mission by mission without places). An
+    interval of no width says that all missions differ alike, not that the difference is certain: read p.
 
     Raises:
         InputError: If the ids of the two sets differ or stand twice, or as `aggregate`.
     """
-    ours, theirs = _checked(first, confidence), _checked(second, confidence)
-    faults = []
-    for name, listed in (("first", ours), ("second", theirs)):
-        ids = [item.mission_id for item in listed]
-        if len(set(ids)) < len(ids):
-            faults.append(Fault(f"the {name} set holds a mission twice", "each mission once"))
-    odd = sorted({item.mission_id for item in ours} ^ {item.mission_id for item in theirs})
-    if odd:
-        faults.append(Fault(f"{len(odd)} missions are in one set only, {odd[0]!r} first", "the same missions in both"))
-    if ours[0].vehicle != theirs[0].vehicle or ours[0].time_limit_s != theirs[0].time_limit_s:
-        faults.append(Fault("vehicles or time limits of the two sets differ", "the same vehicle and time limit"))
-    if faults:
-        raise InputError("comparison", faults)
-    draws = _draws(len(ours), seed)
-
-    def figures(listed: Sequence[MissionScore], picked: NDArray[np.int64]) -> dict[str, Floats]:
-        columns = {
-            "SR": np.asarray([item.success for item in listed], dtype=np.float64),
-            "OSR": np.asarray([item.oracle_success for item in listed], dtype=np.float64),
-            "SPL": np.asarray([item.spl for item in listed]),
-            "time": np.asarray([item.time_factor for item in listed]),
-            "CASR per mission": np.asarray([item.casr for item in listed]),
-        }
-        means = {name: np.asarray(np.mean(values[picked], axis=-1)) for name, values in columns.items()}
-        means["CASR"] = means["SR"] * means.pop("time")
-        return means
-
-    everything = np.arange(len(ours), dtype=np.int64)
-    mine, other = figures(ours, everything), figures(theirs, everything)
-    mine_drawn, other_drawn = figures(ours, draws), figures(theirs, draws)
+    ours, theirs = _paired({"first": first, "second": second}, confidence)
+    groups, interval = _groups(ours, places)
+    metrics = []
+    for name in COMPARED:
+        mine, other = (_values(listed, _FIGURES[name]) for listed in (ours, theirs))
+        whole, drawn = _means(np.concatenate((mine, other), axis=1), groups, seed)
+        width = mine.shape[1]
+        ahead = _product(drawn[:, :width]) - _product(drawn[:, width:])
+        low, high = percentile_interval(ahead, confidence=confidence)
+        value = float(_product(whole[:width]) - _product(whole[width:]))
+        p = sign_flip_test(group_sums(_differences(mine, other)[:, None], groups)[:, 0], seed=seed)
+        metrics.append(Metric(name, value, low, high, len(ours), interval, p))
     return MetricTable(
         vehicle=ours[0].vehicle,
         count=len(ours),
-        metrics=tuple(
-            _metric(name, float(mine[name] - other[name]), mine_drawn[name] - other_drawn[name], len(ours), confidence)
-            for name in ("SR", "OSR", "SPL", "CASR", "CASR per mission")
-        ),
+        metrics=tuple(metrics),
         unreachable=sum(math.isinf(item.reference_length_m) for item in ours),
         confidence=confidence,
     )
 
 
-def wilson_interval(successes: int, count: int, *, confidence: float = 0.95) -> tuple[float, float]:
-    """Return Wilson's score interval for a share (E. B. Wilson, "Probable inference", 1927), inside [0, 1].
+def headroom_closed(
+    method: Sequence[MissionScore],
+    baseline: Sequence[MissionScore],
+    bound: Sequence[MissionScore],
+    *,
+    name: str = "SR",
+    places: Places | None = None,
+    seed: int = 0,
+    confidence: float = 0.95,
+) -> Metric | None:
+    """Return which share of the way from a baseline to a bound a method has come: (m − b) / (B − b).
+
+    Below 0 it is worse than the baseline, above 1 better than the bound. All three are drawn together, on the same
+    missions. A resample in which the bound is not above the baseline has no share: it counts as −∞ at the lower end and
+    as +∞ at the upper one, so that the interval is open on a side where there are too many of them.
+
+    Args:
+        method: Whose share it is.
+        baseline: What it starts from.
+        bound: What can be reached, e.g. perfect foresight.
+        name: Of the figure, one of `COMPARED`.
+        places: As in `aggregate`.
+        seed: Of the bootstrap.
+        confidence: Of the interval.
+
+    Returns:
+        None where the bound is not above the baseline: there is no headroom.
 
     Raises:
-        InputError: If there is no trial, more successes than trials, or the confidence is not in (0, 1).
+        InputError: If there is no such figure, or as `compare`.
     """
-    faults = []
-    if not (count >= 1 and 0 <= successes <= count):
-        faults.append(Fault(f"{successes} successes of {count}", "0 ≤ successes ≤ count, count ≥ 1"))
-    if not 0.0 < confidence < 1.0:
-        faults.append(Fault(f"confidence is {confidence}", "a number in (0, 1)"))
-    if faults:
-        raise InputError("Wilson interval", faults)
-    z = NormalDist().inv_cdf(0.5 + confidence / 2.0)
-    share = successes / count
-    middle = share + z * z / (2.0 * count)
-    half = z * math.sqrt(share * (1.0 - share) / count + z * z / (4.0 * count * count))
-    scale = 1.0 + z * z / count
-    low = 0.0 if successes == 0 else max(0.0, (middle - half) / scale)
-    high = 1.0 if successes == count else min(1.0, (middle + half) / scale)
-    return low, high
+    columns = _columns(name)
+    sets = _paired({"method": method, "baseline": baseline, "bound": bound}, confidence)
+    groups, interval = _groups(sets[0], places)
+    whole, drawn = _means(np.concatenate([_values(listed, columns) for listed in sets], axis=1), groups, seed)
+
+    def share(means: Floats) -> Floats:
+        reached, low, high = (_product(part) for part in np.split(means, 3, axis=-1))
+        room = high - low
+        return np.where(room > _NO_ROOM, (reached - low) / np.where(room > _NO_ROOM, room, 1.0), np.nan)
+
+    value = float(share(whole))
+    if math.isnan(value):
+        return None
+    low, high = percentile_interval(share(drawn), confidence=confidence)
+    return Metric(f"headroom closed ({name})", value, low, high, len(sets[0]), interval)
 
 
-def _time_factor(elapsed_s: float, time_limit_s: float, *, over_time: bool) -> float:
-    return 0.0 if over_time else min(1.0, max(0.0, 1.0 - elapsed_s / time_limit_s))
+def paired_differences(
+    first: Sequence[MissionScore], second: Sequence[MissionScore], *, name: str = "SR"
+) -> dict[str, float]:
+    """Return what each mission, by its id, adds to the difference of two methods; their mean is the difference.
+
+    For CASR, a product of means, a mission's part is s̄ · Δt + t̄ · Δs, with s̄ and t̄ the means of both methods: exact in
+    sum. For `statistics.missions_needed`.
+
+    Raises:
+        InputError: If there is no such figure, or as `compare`.
+    """
+    columns = _columns(name)
+    ours, theirs = _paired({"first": first, "second": second}, 0.95)
+    parts = _differences(_values(ours, columns), _values(theirs, columns))
+    return {item.mission_id: float(part) for item, part in zip(ours, parts, strict=True)}
+
+
+def _columns(name: str) -> tuple[Column, ...]:
+    if name not in COMPARED:
+        raise InputError("comparison", [Fault(f"there is no figure {name!r} to compare", ", ".join(COMPARED))])
+    return _FIGURES[name]
+
+
+def _values(listed: Sequence[MissionScore], columns: Sequence[Column]) -> Floats:
+    """Return the columns of missions, shape (missions, columns)."""
+    return np.asarray([[of(item) for of in columns] for item in listed], dtype=np.float64)
+
+
+def _product(means: Floats) -> Floats:
+    return np.asarray(np.prod(means, axis=-1))
+
+
+def _differences(mine: Floats, other: Floats) -> Floats:
+    """Return what each mission adds to the difference of two figures, shape (n,), so that their mean is the difference.
+
+    Swapping the two methods in a mission flips the sign of its part and leaves the others' parts as they are, for a
+    product of two means, too: with s̄ = (s + s')/2 and t̄ likewise, s t − s' t' = s̄ (t − t') + t̄ (s − s').
+    """
+    apart = mine - other
+    if mine.shape[1] == 1:
+        return apart[:, 0]
+    middle = (mine + other).mean(axis=0) / 2.0
+    return np.asarray(middle[1] * apart[:, 0] + middle[0] * apart[:, 1])
+
+
+def _groups(listed: Sequence[MissionScore], places: Places | None) -> tuple[Ints, str]:
+    """Return what is drawn as a whole, and the name of such an interval; with one place only, missions are drawn."""
+    ids = [item.mission_id for item in listed]
+    groups = groups_of(ids, places)
+    if places is None or int(groups.max()) == 0:
+        return groups_of([str(k) for k in range(len(ids))], None), "bootstrap"
+    return groups, "clustered bootstrap"
+
+
+def _means(values: Floats, groups: Ints, seed: int) -> tuple[Floats, Floats]:
+    """Return the columns' means, shape (columns,), and those of each resample, shape (resamples, columns)."""
+    sums = group_sums(np.concatenate((values, np.ones((len(values), 1))), axis=1), groups)
+    drawn = bootstrap_sums(sums, seed=seed)
+    return np.mean(values, axis=0), drawn[:, :-1] / drawn[:, -1:]
+
+
+def _metric(
+    name: str,
+    columns: Sequence[Column],
+    listed: Sequence[MissionScore],
+    *,
+    places: Places | None,
+    seed: int,
+    confidence: float,
+    is_share: bool,
+) -> Metric:
+    """Return a figure: the product of its columns' means over the missions that have it."""
+    having = [item for item in listed if not any(math.isnan(of(item)) for of in columns)]
+    if not having:
+        return Metric(name, math.nan, math.nan, math.nan, 0, "none")
+    values, count = _values(having, columns), len(having)
+    groups, interval = _groups(having, places)
+    if is_share and interval == "bootstrap":
+        return _wilson(name, values, confidence)
+    means, drawn = _means(values, groups, seed)
+    products = _product(drawn)
+    if is_share and float(products.min()) == float(products.max()):
+        return _wilson(name, values, confidence)
+    low, high = percentile_interval(products, confidence=confidence)
+    return Metric(name, float(_product(means)), low, high, count, interval)
+
+
+def _wilson(name: str, values: Floats, confidence: float) -> Metric:
+    hits, count = int(values.sum()), len(values)
+    low, high = wilson_interval(hits, count, confidence=confidence)
+    return Metric(name, hits / count, low, high, count, "Wilson")
 
 
 def _checked(scores: Iterable[MissionScore], confidence: float) -> list[MissionScore]:
@@ -469,27 +384,21 @@ def _checked(scores: Iterable[MissionScore], confidence: float) -> list[MissionS
     return listed
 
 
-def _draws(count: int, seed: int) -> NDArray[np.int64]:
-    bulk = np.random.Generator(np.random.PCG64(key_of(seed, "bootstrap", count)))
-    return bulk.integers(0, count, size=(RESAMPLES, count))
-
-
-def _share(name: str, answers: Sequence[bool], confidence: float) -> Metric:
-    low, high = wilson_interval(sum(answers), len(answers), confidence=confidence)
-    return Metric(name, sum(answers) / len(answers), low, high, len(answers), "Wilson")
-
-
-def _metric(name: str, value: float, resampled: Floats, count: int, confidence: float) -> Metric:
-    tail = 50.0 * (1.0 - confidence)
-    low, high = (float(v) for v in np.percentile(resampled, [tail, 100.0 - tail]))
-    return Metric(name, value, low, high, count, "bootstrap")
-
-
-def _distance(listed: Sequence[MissionScore], seed: int, confidence: float) -> Metric:
-    """Return the mean distance to the goal at the end, of the missions that have one."""
-    name = "distance to goal"
-    finite = np.asarray([d.distance_to_goal_m for d in listed if math.isfinite(d.distance_to_goal_m)])
-    if not finite.size:
-        return Metric(name, math.nan, math.nan, math.nan, 0, "bootstrap")
-    means = np.mean(finite[_draws(finite.size, seed)], axis=1)
-    return _metric(name, float(np.mean(finite)), means, int(finite.size), confidence)
+def _paired(sets: Mapping[str, Sequence[MissionScore]], confidence: float) -> list[list[MissionScore]]:
+    """Return sets of the same missions, each in the order of ids."""
+    listed = {name: _checked(scores, confidence) for name, scores in sets.items()}
+    ids = {name: {item.mission_id for item in scores} for name, scores in listed.items()}
+    faults = [
+        Fault(f"the {name} set holds a mission twice", "each mission once")
+        for name, scores in listed.items()
+        if len(ids[name]) < len(scores)
+    ]
+    everything = set[str]().union(*ids.values())
+    odd = sorted(everything - everything.intersection(*ids.values()))
+    if odd:
+        faults.append(Fault(f"{len(odd)} missions are not in every set, {odd[0]!r} first", "the same missions in all"))
+    if len({(scores[0].vehicle, scores[0].time_limit_s) for scores in listed.values()}) > 1:
+        faults.append(Fault("vehicles or time limits of the sets differ", "the same vehicle and time limit"))
+    if faults:
+        raise InputError("comparison", faults)
+    return list(listed.values())

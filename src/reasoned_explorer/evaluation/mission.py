@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from reasoned_explorer.clock import Clock, MixedClock, RealClock, VirtualClock
-from reasoned_explorer.evaluation.metrics import MissionOutcome, MissionScore, score
 from reasoned_explorer.evaluation.oracle import OracleTruth
 from reasoned_explorer.evaluation.record_file import RecordWriter
+from reasoned_explorer.evaluation.scoring import Look, MissionScore, outcome_of, score
 from reasoned_explorer.exploration.explorer import Exploration, Explorer, Parts
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
@@ -194,11 +194,11 @@ class Mission:
                 exploration = self.clock.run(self.explorer.run(self.goal))
         except KeyboardInterrupt:
             stopped = self._exploration_so_far(steps)
-            summary, _ = self._summary(stopped, steps)
+            summary, _ = self._summary(header, stopped, steps)
             if writer is not None:
                 writer.summary(summary)
             raise
-        summary, score = self._summary(exploration, steps)
+        summary, score = self._summary(header, exploration, steps)
         if writer is not None:
             writer.summary(summary)
         folder = writer.path.parent if writer is not None else None
@@ -301,26 +301,29 @@ class Mission:
         ct_s, tt_s = (last.ct_s, last.tt_s) if last else (0.0, 0.0)
         return Exploration(MissionEnd.INTERRUPTED, "stopped by a person", ct_s, tt_s, plan_s, len(steps))
 
-    def _summary(self, ended: Exploration, steps: list[StepRecord]) -> tuple[MissionSummary, MissionScore]:
-        judged = self.judge.review(track_of(self.start, steps))
+    def _summary(
+        self, header: MissionHeader, ended: Exploration, steps: list[StepRecord]
+    ) -> tuple[MissionSummary, MissionScore]:
+        track = track_of(self.start, steps)
+        judged = self.judge.review(track)
         declared = ended.end is MissionEnd.FOUND
         reference_m = self.judge.reference_length_m(self.start)
         scored = score(
-            MissionOutcome(
+            outcome_of(
+                track,
+                self.judge,
                 mission_id=f"{self.atlas.world.name}|{self.goal.text}|{self.settings.seed}",
-                level=self.spec.level,
                 vehicle=self.profile.name,
                 declared=declared,
-                in_place=judged.success,
-                in_place_at=tuple((radius_m, judged.success_at(radius_m)) for radius_m, _ in judged.end.at_radius),
-                oracle_success=judged.oracle_success,
-                path_length_m=judged.length_m,
-                reference_length_m=reference_m,
                 computing_s=ended.ct_s,
                 planner_computing_s=min(ended.plan_s, ended.ct_s),
                 travelling_s=ended.tt_s,
                 time_limit_s=self.settings.explorer.t_max_s,
-                distance_to_goal_m=judged.end.nearest_m,
+                looks=looks_of(steps),
+                fov_rad=self.profile.camera.horizontal_fov_rad,
+                report=judged,
+                reference_length_m=reference_m,
+                reference_way=header.reference_way,
             )
         )
         calls: dict[str, int] = {}
@@ -410,6 +413,19 @@ def track_of(start: Pose, steps: list[StepRecord]) -> list[TrackPoint]:
         for leg in step.legs:
             track += leg.track
     return track
+
+
+def looks_of(steps: list[StepRecord]) -> list[Look]:
+    """Return where on `track_of` the agent looked, and in which headings; all looks of a step are from one place.
+
+    Headings are those that the vehicle believed in: within a degree or two of the true ones.
+    """
+    looks, point = [], 0
+    for step in steps:
+        if step.views:
+            looks.append(Look(point, tuple(view.heading_rad for view in step.views)))
+        point += sum(len(leg.track) for leg in step.legs)
+    return looks
 
 
 def run_mission(

@@ -9,7 +9,7 @@ import math
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
-from reasoned_explorer.evaluation.metrics import MissionScore
+from reasoned_explorer.evaluation.scoring import MissionScore
 from reasoned_explorer.model import Fault, InputError
 
 

@@ -167,6 +167,34 @@ class Judge:
             grade=found.grade if found is not None and success else 0,
         )
 
+    def in_view(self, x_m: float, y_m: float, headings_rad: Sequence[float], fov_rad: float) -> bool:
+        """Return whether a declaration succeeds at a point for a thing that is in one of some views from there.
+
+        A thing is in a view where a part of it that is within the success radius and in sight lies in the view's
+        horizontal field.
+
+        Args:
+            x_m: East, metres.
+            y_m: North, metres.
+            headings_rad: Where the views look, compass.
+            fov_rad: Horizontal field of view of each, radians, in (0, π).
+
+        Raises:
+            InputError: If a number is not finite or the field of view is out of range.
+        """
+        _check_finite(x_m=x_m, y_m=y_m, **{f"heading {i}": heading for i, heading in enumerate(headings_rad)})
+        if not 0.0 < fov_rad < math.pi:
+            raise InputError("view", [Fault(f"fov_rad is {fov_rad}", "radians in (0, π)")])
+        reach_m, at = self.success_radius_m + self._slack_m, shapely.Point(x_m, y_m)
+        places = self._index.query(at, predicate="dwithin", distance=reach_m) if self.targets else ()
+        near = [self.targets[int(place)] for place in np.sort(places)]
+        near = [target for target in near if target.distance_m(x_m, y_m) <= self.success_radius_m]
+        if not near:
+            return False
+        field, eye = _field_of(x_m, y_m, headings_rad, fov_rad, self.success_radius_m), (x_m, y_m, self.camera_height_m)
+        # Spots stand for what is near to them.
+        return any(self._sees(eye, item, field.buffer(item.slack_m) if item.slack_m else field) for item in near)
+
     def review(self, track: Sequence[TrackPoint]) -> TrackReport:
         """Return what the judge says to a track of true positions, with at least one point.
 
@@ -280,16 +308,23 @@ class Judge:
         pairs = self._index.query(shapely.points(xs_m, ys_m), predicate="dwithin", distance=reach_m)
         return [int(place) for place in np.unique(pairs[0])]
 
-    def _sees(self, eye: tuple[float, float, float], target: Target) -> bool:
-        """Return whether there is a line of sight to the thing: to its nearest point, its middle or its corners."""
+    def _sees(self, eye: tuple[float, float, float], target: Target, field: Any = None) -> bool:
+        """Return whether there is a line of sight to the thing: to its nearest point, its middle or its corners.
+
+        With a field (shapely) only the part of it that lies in there is looked at.
+        """
+        shape = target.shape if field is None else shapely.intersection(target.shape, field)
+        if shape.is_empty:
+            return False
         item = self.atlas.world.objects[target.object_id]
         height_m = item.size_m[2]
         at = shapely.Point(eye[0], eye[1])
-        nearest = shapely.get_coordinates(shapely.shortest_line(at, target.shape))[1]
+        nearest = shapely.get_coordinates(shapely.shortest_line(at, shape))[1]
         points = [(float(nearest[0]), float(nearest[1]))]
         if item.object_class.kind not in {"area", "place"}:
-            points.append((item.x_m, item.y_m))
-            corners = shapely.get_coordinates(target.shape)
+            if field is None or shapely.intersects_xy(field, item.x_m, item.y_m):
+                points.append((item.x_m, item.y_m))
+            corners = shapely.get_coordinates(shape)
             points += [(float(x), float(y)) for x, y in corners[:: max(1, len(corners) // 4)]]
         heights = (0.5 * height_m, 0.9 * height_m) if height_m > 1.0 else (0.5 * height_m,)
         clear = self.atlas.sight.clear
@@ -384,6 +419,20 @@ class Judge:
         if way is None:
             return math.inf, (x_m, y_m)
         return float(np.hypot(*np.diff(way, axis=0).T).sum()), (float(way[-1][0]), float(way[-1][1]))
+
+
+def _field_of(x_m: float, y_m: float, headings_rad: Sequence[float], fov_rad: float, radius_m: float) -> Any:
+    """Return the union of the sectors that views from a point cover, as a shapely geometry."""
+    turns = np.linspace(-fov_rad / 2.0, fov_rad / 2.0, 17)
+    # The corners lie a little outside of the arc, so that the chords between them do not cut it.
+    reach_m = radius_m / math.cos(fov_rad / 32.0)
+    sectors = [
+        shapely.Polygon(
+            [(x_m, y_m), *zip(x_m + reach_m * np.sin(h + turns), y_m + reach_m * np.cos(h + turns), strict=True)]
+        )
+        for h in headings_rad
+    ]
+    return shapely.union_all(sectors)
 
 
 def _xy(start: Pose | tuple[float, float]) -> tuple[float, float]:
