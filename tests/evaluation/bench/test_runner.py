@@ -12,7 +12,6 @@ from reasoned_explorer.evaluation.bench.plan import BenchPlan
 from reasoned_explorer.evaluation.bench.pools import MAX_TRIES, run_in_processes
 from reasoned_explorer.evaluation.bench.runner import BenchProgress, Workers, run_bench, split_of
 from reasoned_explorer.evaluation.bench.store import RunStore
-from reasoned_explorer.evaluation.bench.worker import run_task
 from reasoned_explorer.task.split import Split
 from reasoned_explorer.task.splitting import Dealing
 
@@ -38,16 +37,16 @@ def test_several_processes_make_the_same_rows(tmp_path: Path, small_plan: BenchP
 
 
 def test_a_run_goes_on_where_it_stopped(tmp_path: Path, small_plan: BenchPlan, alone: list[str]) -> None:
-    class Enough(Exception):
+    class EnoughError(Exception):
         pass
 
     def stop(progress: BenchProgress) -> None:
         if progress.here == 5:
-            raise Enough
+            raise EnoughError
 
     seen: list[tuple[int, int]] = []
     with RunStore.create(tmp_path / "run", small_plan, {}) as store:
-        with pytest.raises(Enough):
+        with pytest.raises(EnoughError):
             run_bench(store, Workers(), stop)
         run_bench(store, Workers(), lambda progress: seen.append((progress.finished, progress.total)))
         run_bench(store, Workers())
@@ -127,13 +126,10 @@ def _lives(pid: int) -> bool:
         return False
 
 
-
-
 def test_a_mission_that_kills_its_process_has_failed_and_the_others_go_on(
     small_plan: BenchPlan, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    # The plan's first mission is taken for one that crashes: a vehicle file that is not there cannot do that, so the
-    # child process is told by its environment.
+    # Nothing that a mission may do kills its process: the child is told by its environment to take its own life.
     tasks = list(small_plan.tasks())[:3]
     monkeypatch.setenv("REX_TEST_CRASH", tasks[0].mission_id)
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(tmp_path), *sys.path]))

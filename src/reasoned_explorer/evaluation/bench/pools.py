@@ -6,7 +6,6 @@ from collections.abc import Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from itertools import chain
 from multiprocessing import get_context, parent_process
 
 from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
@@ -34,20 +33,19 @@ def run_in_processes(plan: BenchPlan, tasks: Sequence[Task], *, workers: int) ->
     parent is gone end by themselves.
     """
     left = iter(tasks)
-    tries: dict[Task, int] = {}
-    again: list[Task] = []
     with _one_thread_each():
-        while True:
-            broken = yield from _run_pool(plan, chain(again, left), workers)
-            if broken is None:
-                return
-            again = []
-            for task in broken:
-                tries[task] = tries.get(task, 0) + 1
-                if tries[task] < MAX_TRIES:
-                    again.append(task)
-                else:
-                    yield lost(plan, task, f"its process died {MAX_TRIES} times")
+        while suspects := (yield from _run_pool(plan, left, workers)):
+            # Which of them it was cannot be known: each is tried alone, so that none fails for another.
+            for task in suspects:
+                yield from _run_alone(plan, task)
+
+
+def _run_alone(plan: BenchPlan, task: Task) -> Generator[Done, None, None]:
+    for _ in range(1, MAX_TRIES):
+        suspects = yield from _run_pool(plan, iter([task]), 1)
+        if not suspects:
+            return
+    yield lost(plan, task, f"its process died {MAX_TRIES} times")
 
 
 def lost(plan: BenchPlan, task: Task, reason: str) -> Done:
@@ -55,8 +53,8 @@ def lost(plan: BenchPlan, task: Task, reason: str) -> Done:
     return Done(task, failed_row(plan, task, reason).as_json(), None, 0.0, failed=True, usd=0.0)
 
 
-def _run_pool(plan: BenchPlan, tasks: Iterator[Task], workers: int) -> Generator[Done, None, list[Task] | None]:
-    """Run missions until they are done (returns None) or a process dies (returns the missions that were under way)."""
+def _run_pool(plan: BenchPlan, tasks: Iterator[Task], workers: int) -> Generator[Done, None, list[Task]]:
+    """Run missions until they are done or a process dies; return the missions that were under way when it did."""
     under_way: dict[Future[Done], Task] = {}
     broken: list[Task] = []
     pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_begin, initargs=(plan,))
@@ -70,7 +68,7 @@ def _run_pool(plan: BenchPlan, tasks: Iterator[Task], workers: int) -> Generator
                 if broken or len(under_way) >= _AHEAD * workers:
                     break
             if not under_way:
-                return broken or None
+                return broken
             for future in wait(under_way, return_when=FIRST_COMPLETED).done:
                 task = under_way.pop(future)
                 try:

@@ -20,9 +20,9 @@ from types import TracebackType
 from typing import Any, Self
 
 from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
-from reasoned_explorer.evaluation.metrics import MissionScore
 from reasoned_explorer.evaluation.record_file import parse_record
 from reasoned_explorer.evaluation.row import MissionRow
+from reasoned_explorer.evaluation.scoring import MissionScore
 from reasoned_explorer.model import Fault, RecordError, RecordWriteError
 from reasoned_explorer.model.record import EpisodeRecord
 

@@ -225,10 +225,16 @@ def _common(ours: Results, theirs: Results) -> list[tuple[str | None, str | None
 
 
 def _differences(title: str, tables: Sequence[tuple[str, MetricTable]]) -> Sheet:
-    corrected = holm([_p(table["SR"]) for _, table in tables])
+    corrected = holm({name: _p(table["SR"]) for name, table in tables})
     lines = [
-        (name, f"{table.count}", *(figure(table[shown]) for shown in DIFFERENCES), f"{_p(table['SR']):.3f}", f"{p:.3f}")
-        for (name, table), p in zip(tables, corrected, strict=True)
+        (
+            name,
+            f"{table.count}",
+            *(figure(table[shown]) for shown in DIFFERENCES),
+            f"{_p(table['SR']):.3f}",
+            f"{corrected[name]:.3f}",
+        )
+        for name, table in tables
     ]
     note = (
         "Intervals are 95 %, paired by mission, resampled by place where there are several. p: sign-flip test on SR by "

@@ -8,10 +8,10 @@ from functools import lru_cache
 from typing import Any
 
 from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
-from reasoned_explorer.evaluation.metrics import MissionOutcome, MissionScore, score
 from reasoned_explorer.evaluation.mission import Mission, MissionResult
 from reasoned_explorer.evaluation.record_file import record_bytes
 from reasoned_explorer.evaluation.row import MissionRow
+from reasoned_explorer.evaluation.scoring import MissionOutcome, MissionScore, score
 from reasoned_explorer.model import ReasonedExplorerError
 from reasoned_explorer.model.record import MissionEnd, StepRecord
 from reasoned_explorer.task.split import Place, SplitEpisode

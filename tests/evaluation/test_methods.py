@@ -1,0 +1,52 @@
+import pytest
+
+from reasoned_explorer.evaluation.methods import GROUPS, method, methods
+from reasoned_explorer.evaluation.mission import MissionSettings
+from reasoned_explorer.model import InputError, SettingsError, UnknownNameError
+
+BASE = MissionSettings(minds="embedded", checker=None, seed=5)
+
+
+def test_a_planner_is_a_method() -> None:
+    settings = method("follow-paths").settings(BASE)
+    assert (settings.planner, settings.minds, settings.checker, settings.seed) == ("follow-paths", "embedded", None, 5)
+    assert not method("follow-paths").is_bound
+
+
+def test_settings_minds_and_halt_are_written_into_the_name() -> None:
+    settings = method("llm-rrt:depth=1,children=2@embedded/oracle+perfect-halt").settings(BASE)
+    assert settings.planner == "llm-rrt"
+    assert settings.planner_settings == {"depth": 1, "children": 2}
+    assert (settings.visionary, settings.evaluator, settings.checker) == ("embedded", "oracle", "perfect-halt")
+
+
+def test_bounds_have_names_of_their_own() -> None:
+    assert method("oracle").settings(BASE).agent == "guide"
+    assert method("foresight-30m").settings(BASE).evaluator == "foresight-30m"
+    assert all(method(name).is_bound for name in (*GROUPS["bounds"], *GROUPS["halts"]))
+
+
+def test_every_group_can_be_made() -> None:
+    for name, members in GROUPS.items():
+        assert tuple(each.name for each in methods([name])) == members
+
+
+def test_names_and_groups_stand_once() -> None:
+    names = [each.name for each in methods(["llm-rrt", "planners", "llm-rrt"])]
+    assert names[0] == "llm-rrt"
+    assert len(set(names)) == len(names)
+
+
+def test_all_names_that_are_wrong_are_told_at_once() -> None:
+    with pytest.raises(InputError) as raised:
+        methods(["llm-rtt", "oracle:depth=1", "llm-rrt@embedded"])
+    text = str(raised.value)
+    assert "did you mean llm-rrt" in text
+    assert "a bound as it is" in text
+    assert "visionary/evaluator" in text
+    with pytest.raises(UnknownNameError):
+        method("")
+    with pytest.raises(InputError, match="at least one"):
+        methods([])
+    with pytest.raises(SettingsError):
+        method("llm-rrt:depth")
