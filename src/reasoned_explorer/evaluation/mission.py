@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from reasoned_explorer.clock import Clock, MixedClock, RealClock, VirtualClock
-from reasoned_explorer.evaluation.oracle import OracleTruth
+from reasoned_explorer.evaluation.guide import GUIDE_LABEL, Guide
 from reasoned_explorer.evaluation.record_file import RecordWriter
 from reasoned_explorer.evaluation.scoring import Look, MissionScore, outcome_of, score
+from reasoned_explorer.evaluation.truth import OracleTruth
 from reasoned_explorer.exploration.explorer import Exploration, Explorer, Parts
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
@@ -40,6 +41,8 @@ from reasoned_explorer.world.geodesic import Traveller
 from reasoned_explorer.world.world import World
 
 CLOCKS: Mapping[str, Callable[[], Clock]] = {"virtual": VirtualClock, "mixed": MixedClock, "real": RealClock}
+#: Who carries a mission out: the method's agent, or the bound that knows the shortest compliant way.
+AGENTS = ("explorer", "guide")
 #: A seeded random start is at least and at most this far, on the shortest compliant way, from being successful.
 START_RANGE_M = (60.0, 400.0)
 
@@ -62,6 +65,7 @@ class MissionSettings:
         explorer: How the agent explores.
         success_radius_m: R of the judge, metres.
         seed: Of the mission: everything that is drawn is keyed by it.
+        agent: One of `AGENTS`; the guide asks no planner, mind or captioner.
 
     A planner may bring settings of the agent with it (`planning.Planner`); a mission's own ``settings`` are those that
     are in force.
@@ -80,6 +84,7 @@ class MissionSettings:
     explorer: ExplorerSettings = field(default_factory=ExplorerSettings)
     success_radius_m: float = 15.0
     seed: int = 0
+    agent: str = "explorer"
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +158,12 @@ class Mission:
         if self.settings.clock not in CLOCKS:
             raise UnknownNameError("clock", self.settings.clock, tuple(CLOCKS))
         self.clock = CLOCKS[self.settings.clock]()
-        self.explorer = self._explorer()
+        if self.settings.agent not in AGENTS:
+            raise UnknownNameError("agent", self.settings.agent, AGENTS)
+        # Privileged minds and the guide alone may read the truth; they are the only ones that ask for it.
+        truth = OracleTruth(self.atlas, self.judge, self.profile, self.settings.explorer)
+        self.explorer: Explorer | Guide
+        self.explorer = self._guide(truth) if self.settings.agent == "guide" else self._explorer(truth)
 
     def run(self, *, folder: Path | None = None, on_step: Callable[[StepRecord], None] | None = None) -> MissionResult:
         """Run the mission to its end.
@@ -220,11 +230,13 @@ class Mission:
         )
         return replace(drawn, z_m=self.profile.camera_height_m)
 
-    def _explorer(self) -> Explorer:
+    def _guide(self, truth: OracleTruth) -> Guide:
+        self._labels = (GUIDE_LABEL, "no minds", "no captions")
+        return Guide(truth, self._vehicle(), self.clock)
+
+    def _explorer(self, truth: OracleTruth) -> Explorer:
         settings, ledger = self.settings, Ledger()
         latency = latency_profile(settings.latency)
-        # The oracle alone may read the truth; it is the only one that asks for it.
-        truth = OracleTruth(self.atlas, self.judge, self.profile, settings.explorer)
         minds = make_minds(
             MindContext(self.clock, latency, ledger, settings.seed, truth),
             settings.minds,
@@ -244,14 +256,17 @@ class Mission:
 
         captioner = CAPTIONERS.load(settings.captioner)(CaptionerContext(self.clock, settings.seed, charge_captions))
         planner = make_planner(settings.planner, minds, settings.planner_settings)
-        self._labels = (planner, minds.label, captioner.label)
+        self._labels = (planner.label, minds.label, captioner.label)
         explorer = _with_overrides(settings.explorer, planner)
         self.settings = replace(settings, explorer=explorer)
-        vehicle = SimulatedVehicle(
-            self.atlas, self.profile, self.start, clock=self.clock, eyes=Eyes(self.atlas), seed=settings.seed
-        )
-        parts = Parts(vehicle, captioner, planner, minds.checker, self.clock, ledger)
+        parts = Parts(self._vehicle(), captioner, planner, minds.checker, self.clock, ledger)
         return Explorer(parts, explorer)
+
+    def _vehicle(self) -> SimulatedVehicle:
+        eyes = Eyes(self.atlas)
+        return SimulatedVehicle(
+            self.atlas, self.profile, self.start, clock=self.clock, eyes=eyes, seed=self.settings.seed
+        )
 
     @property
     def header(self) -> MissionHeader:
@@ -267,7 +282,7 @@ class Mission:
             world_digest=self.atlas.digest,
             attribution=world.attribution,
             start=(round(start.x_m, 3), round(start.y_m, 3), round(start.z_m, 3), round(start.heading_rad, 6)),
-            planner=planner.label,
+            planner=planner,
             minds=minds_label,
             captioner=captioner_label,
             vehicle=self.profile.name,

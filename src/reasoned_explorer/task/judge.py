@@ -113,14 +113,14 @@ class Judge:
         self.traveller = traveller
         self.success_radius_m = success_radius_m
         self.camera_height_m = camera_height_m
-        self._grader = grader or Grader(atlas)
+        self.grader = grader or Grader(atlas)
         self._cells: dict[int, NDArray[np.int64]] = {}
         self._ends: dict[tuple[float, float], tuple[float, tuple[float, float]] | None] = {}
 
     @cached_property
     def graded(self) -> tuple[Target, ...]:
         """Every object with a grade above 0, in the order of ids."""
-        return self._grader.grade(self.spec)
+        return self.grader.grade(self.spec)
 
     @cached_property
     def targets(self) -> tuple[Target, ...]:
