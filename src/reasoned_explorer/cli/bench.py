@@ -31,7 +31,7 @@ from reasoned_explorer.evaluation.bench.tables import (
     paper_sheets,
 )
 from reasoned_explorer.evaluation.methods import methods
-from reasoned_explorer.evaluation.mission import MissionSettings
+from reasoned_explorer.evaluation.mission_settings import MissionSettings
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.model import Fault, InputError, SettingsError
 from reasoned_explorer.task.split import Split
