@@ -5,7 +5,7 @@ import pytest
 
 from reasoned_explorer.model import SettingsError, StartError
 from reasoned_explorer.task.reading import read_goal
-from reasoned_explorer.task.sampling import SamplingSettings, free_places, sample_episodes, sample_start
+from reasoned_explorer.task.sampling import EDGE_M, SamplingSettings, free_places, sample_episodes, sample_start
 from reasoned_explorer.world.taxonomy import Ground
 from tests.task.scenes import WALKER, box, house, judge_of, patch, world_of
 
@@ -43,6 +43,31 @@ def test_rare_free_ground_is_found_too():
 
 def test_unknown_ground_is_taken_where_there_is_no_other():
     assert len(free_places(world_of(ground=Ground.UNKNOWN), traveller=WALKER, count=3, seed=1)) == 3
+
+
+def test_places_keep_off_the_edge_where_they_can():
+    def rim_m(atlas, seed):
+        places = free_places(atlas, traveller=WALKER, count=100, seed=seed, edge_m=25.0)
+        bounds = atlas.world.bounds
+        low, high = (bounds.min_x_m, bounds.min_y_m), (bounds.max_x_m, bounds.max_y_m)
+        return min((places - low).min(), (high - places).min())
+
+    assert rim_m(world_of(size_m=200), 1) >= 25.0
+    assert 0.0 < rim_m(world_of(size_m=40), 1) < 20.0
+    # Known ground at the edge is better than unknown ground inside.
+    rim = world_of(size_m=200, ground=Ground.UNKNOWN, regions=[patch(Ground.PLAZA, 0, 0, 5, 200)])
+    assert rim_m(rim, 1) < 5.0
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_start_is_not_at_the_edge_of_the_world(seed):
+    atlas = world_of(("bench", 100, 100), size_m=200)
+    start, _ = sample_start(
+        atlas, read_goal("Find me a bench"), WALKER, seed=seed, settings=SamplingSettings(min_m=20, max_m=200)
+    )
+    bounds = atlas.world.bounds
+    assert bounds.min_x_m + EDGE_M <= start.x_m <= bounds.max_x_m - EDGE_M
+    assert bounds.min_y_m + EDGE_M <= start.y_m <= bounds.max_y_m - EDGE_M
 
 
 def test_a_start_is_within_the_range_and_on_allowed_ground():
