@@ -1,6 +1,5 @@
 """``rex bench``, ``rex compare``, ``rex export``: many missions, and what comes of them."""
 
-import math
 import os
 import shlex
 import sys
@@ -180,8 +179,6 @@ def _split(options: BenchOptions) -> Split:
         faults.append(Fault(f"--per-cell {options.per_cell}", "1 to 1,000"))
     if options.workers is not None and not 1 <= options.workers <= 1024:
         faults.append(Fault(f"--workers {options.workers}", "1 to 1,024"))
-    if not (math.isfinite(options.radius_m) and 1.0 <= options.radius_m <= 50.0):
-        faults.append(Fault(f"--radius {options.radius_m}", "1 to 50 m"))
     if faults:
         raise SettingsError("benchmark", faults)
     if options.worlds:

@@ -7,7 +7,7 @@ from reasoned_explorer.evaluation.bench.plan import BenchPlan
 from reasoned_explorer.evaluation.bench.runner import Workers, run_bench
 from reasoned_explorer.evaluation.bench.store import STORE_NAME, RunStore
 from reasoned_explorer.evaluation.bench.worker import run_task
-from reasoned_explorer.model import RecordError
+from reasoned_explorer.model import PartError, RecordError
 from reasoned_explorer.model.record import MissionEnd
 
 
@@ -99,11 +99,12 @@ def test_names_become_safe_names_of_files(store: RunStore) -> None:
     assert ".." not in str(path.relative_to(store.folder))
 
 
-def test_a_part_that_fails_is_a_row_and_no_exception(small_plan: BenchPlan) -> None:
-    from dataclasses import replace
+def test_a_part_that_fails_is_a_row_and_no_exception(small_plan: BenchPlan, monkeypatch: pytest.MonkeyPatch) -> None:
+    def failing(*_: object, **__: object) -> None:
+        raise PartError("captioner", "it answers nothing")
 
-    blind = replace(small_plan, base=replace(small_plan.base, success_radius_m=500.0))
-    done = run_task(blind, next(blind.tasks()))
+    monkeypatch.setattr("reasoned_explorer.evaluation.bench.worker.Mission", failing)
+    done = run_task(small_plan, next(small_plan.tasks()))
     assert done.failed
     assert f'"end": "{MissionEnd.FAULT.value}"' in done.row
-    assert "success_radius_m" in done.row
+    assert "it answers nothing" in done.row
