@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 #: What must stand over these tables wherever they are shown.
 PAPER_NOTE = (
-    "The paper's figures, not this run's, and not to be compared with it number by number: another simulator (AirSim, "
+    "The paper’s figures, not this run’s, and not to be compared with it number by number: another simulator (AirSim, "
     "Downtown West), other minds (GPT-3.5 and GPT-4 on captions of Kosmos-2), goals, starts and judges of its own, "
     "about 17 missions a level, no intervals."
 )

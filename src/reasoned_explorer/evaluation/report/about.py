@@ -44,7 +44,7 @@ class ReportAbout:
     honesty: tuple[str, ...] = ()
     ceilings: tuple[tuple[str, str], ...] = ()
     interval_method: str = (
-        "Wilson's score interval for shares, percentile bootstrap over missions (2,000 resamples) for everything else"
+        "Wilson’s score interval for shares, percentile bootstrap over missions (2,000 resamples) for everything else"
     )
     methods: tuple[str, ...] = ()
     bounds: tuple[str, ...] = ()

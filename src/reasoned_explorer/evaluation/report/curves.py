@@ -236,7 +236,7 @@ def _seen(reading: str, found: tuple[Relation, ...]) -> str:
     if not shown:
         levels = ", ".join(_told(relation) for relation in known[:1])
         return f"Not shown by this run, over all levels or at any one ({levels})."
-    text = "Shown " + "; ".join(_told(relation) for relation in shown) + "."
+    text = "Shown: " + "; ".join(_told(relation) for relation in shown) + "."
     if reading == "positive":
         text += " With TT: " + "; ".join(_travel(relation) for relation in shown) + "."
     return text

@@ -1,6 +1,7 @@
 """The tables of the report: what each method scored, and by how much it differs from the first."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from reasoned_explorer.evaluation.paper import PAPER_TABLES
 from reasoned_explorer.evaluation.report.scores import Metric, aggregate, mean_of
@@ -56,11 +57,11 @@ def levels_table(study: Study) -> Table:
     shown = ("SR", "OSR", "SPL", "CASR")
     lines = []
     for method in study.methods:
-        cells = [_metric(study, method, level, name, share) for name in shown for level in levels]
+        cells = [_narrow(_metric(study, method, level, name, share)) for name in shown for level in levels]
         lines.append(Line(method, tuple(cells), method))
     return Table(
         key="levels",
-        caption="The four metrics of the paper by level, in the form of its Table I",
+        caption="The four metrics of the paper by level, in the form of its Table I, with 95 % intervals",
         columns=("method", *(level_name(level) for _ in shown for level in levels)),
         groups=(Group("", tuple(lines)),),
         spans=tuple((name, len(levels)) for name in shown),
@@ -262,6 +263,11 @@ def _target(method: str, level: int | None, name: str) -> tuple[str, str]:
 def _metric(study: Study, method: str, level: int | None, name: str, write: Callable[[float], str]) -> Cell:
     href, about = _target(method, level, name)
     return metric_cell(study.metric(method, level, name), write, href=href, about=about)
+
+
+def _narrow(cell: Cell) -> Cell:
+    """Return the cell with its interval, of shares, as briefly as it can be written: twenty stand side by side."""
+    return replace(cell, interval=cell.interval.strip("[]").replace(", ", "–"))
 
 
 def _full_line(study: Study, method: str, level: int | None) -> Line:

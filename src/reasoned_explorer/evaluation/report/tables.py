@@ -1,7 +1,7 @@
 """What a table of the report is: cells with intervals and links for the page, plain records for the file."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from reasoned_explorer.evaluation.report.scores import Metric
 from reasoned_explorer.evaluation.report.wording import NONE
@@ -66,7 +66,12 @@ class Table:
     spans: tuple[tuple[str, int], ...] = ()
     note: str = ""
     head: tuple[str, ...] = ()
-    records: tuple[tuple[Value, ...], ...] = field(default=())
+    records: tuple[tuple[Value, ...], ...] = ()
+
+    @property
+    def starts(self) -> frozenset[int]:
+        """The places of the columns at which a head above the heads begins."""
+        return frozenset(1 + sum(count for _, count in self.spans[:place]) for place in range(len(self.spans)))
 
 
 #: Heads of the files that list metrics.

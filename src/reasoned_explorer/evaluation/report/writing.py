@@ -115,6 +115,7 @@ def _replace_folder(folder: Path, contents: dict[str, bytes]) -> None:
             if old.exists():
                 old.rename(folder)
             raise
-    finally:
+    except BaseException:
         shutil.rmtree(made, ignore_errors=True)
-        shutil.rmtree(old, ignore_errors=True)
+        raise
+    shutil.rmtree(old, ignore_errors=True)
