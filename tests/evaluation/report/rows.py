@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from reasoned_explorer.evaluation.metrics import MissionOutcome, score
 from reasoned_explorer.evaluation.report import ReportAbout
 from reasoned_explorer.evaluation.row import MissionRow
+from reasoned_explorer.evaluation.scoring import MissionOutcome, score
 from reasoned_explorer.model.draws import key_of
 
 METHODS = ("llm-rrt", "llm-as-eval", "nearest-frontier", "follow-paths", "oracle")

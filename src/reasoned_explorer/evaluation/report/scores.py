@@ -9,15 +9,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from reasoned_explorer.evaluation.metrics import (
-    RESAMPLES,
-    Metric,
-    MetricTable,
-    MissionScore,
-    aggregate,
-    by_level,
-    compare,
-)
+from reasoned_explorer.evaluation.metrics import Metric, MetricTable, aggregate, by_level, compare
+from reasoned_explorer.evaluation.scoring import MissionScore
+from reasoned_explorer.evaluation.statistics import RESAMPLES
 from reasoned_explorer.model.draws import key_of
 
 __all__ = [
