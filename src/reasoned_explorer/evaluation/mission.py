@@ -125,6 +125,7 @@ class Mission:
         world: A world, or an atlas of one where several missions share it.
         settings: Who does what.
         start: Where it begins; None draws a start by the seed.
+        judge: A judge of this goal, world, vehicle and success radius from an earlier mission, to share its work with.
 
     Raises:
         GoalError: If the goal cannot be understood, or nothing in this world satisfies it.
@@ -140,21 +141,15 @@ class Mission:
         settings: MissionSettings | None = None,
         *,
         start: Pose | None = None,
+        judge: Judge | None = None,
     ) -> None:
         self.settings = settings or MissionSettings()
         self.atlas = world if isinstance(world, Atlas) else Atlas(world)
-        self.spec = read_goal(goal)
-        self.goal = self.spec.goal
         self.profile = vehicle_profile(self.settings.vehicle)
-        traveller = traveller_of(self.profile)
-        self.judge = Judge(
-            self.atlas,
-            self.spec,
-            traveller=traveller,
-            success_radius_m=self.settings.success_radius_m,
-            camera_height_m=self.profile.camera_height_m,
-        )
-        self.start = self._start(start, traveller)
+        self.judge = judge or judge_of(goal, self.atlas, self.settings.vehicle, self.settings.success_radius_m)
+        self.spec = self.judge.spec
+        self.goal = self.spec.goal
+        self.start = self._start(start, self.judge.traveller)
         if self.settings.clock not in CLOCKS:
             raise UnknownNameError("clock", self.settings.clock, tuple(CLOCKS))
         self.clock = CLOCKS[self.settings.clock]()
@@ -419,6 +414,24 @@ def _finite(value: float | None) -> float | None:
 def traveller_of(profile: VehicleProfile) -> Traveller:
     """Return who the shortest ways are for: what a profile's body can pass."""
     return Traveller(flies=profile.flies, radius_m=profile.radius_m, collides=profile.collides)
+
+
+def judge_of(goal: str, atlas: Atlas, vehicle: str, success_radius_m: float) -> Judge:
+    """Return the judge of a goal in a world for a vehicle.
+
+    Raises:
+        GoalError: If the goal cannot be understood.
+        UnknownNameError: If there is no such vehicle.
+        SettingsError: If the radius is out of range.
+    """
+    profile = vehicle_profile(vehicle)
+    return Judge(
+        atlas,
+        read_goal(goal),
+        traveller=traveller_of(profile),
+        success_radius_m=success_radius_m,
+        camera_height_m=profile.camera_height_m,
+    )
 
 
 def track_of(start: Pose, steps: list[StepRecord]) -> list[TrackPoint]:
