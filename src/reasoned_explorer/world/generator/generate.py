@@ -18,6 +18,7 @@ from reasoned_explorer.world.generator.sketch import Sketch, Zone
 from reasoned_explorer.world.generator.streets import add_crossings
 from reasoned_explorer.world.generator.town import fill_district, fill_town
 from reasoned_explorer.world.generator.traffic import park_cars
+from reasoned_explorer.world.rounding import rounded
 from reasoned_explorer.world.taxonomy import OBJECT_CLASSES, Ground
 from reasoned_explorer.world.world import Bounds, Building, World, WorldObject
 
@@ -69,8 +70,8 @@ def build_world(district: str, *, seed: int, size_m: float, statistics: Statisti
         WorldObject(
             id=index,
             class_name=thing.class_name,
-            x_m=round(thing.x_m, 3),
-            y_m=round(thing.y_m, 3),
+            x_m=thing.x_m,
+            y_m=thing.y_m,
             heading_rad=round(thing.heading_rad, 5),
             size_m=thing.size_m,
             attributes=thing.attributes or {},
@@ -81,7 +82,7 @@ def build_world(district: str, *, seed: int, size_m: float, statistics: Statisti
     )
     buildings = _with_entrances(sketch, plan, sites, furnisher.things)
     size = f"{size_m:g}"
-    return World(
+    world = World(
         name=f"{district}:{seed}@{size}",
         bounds=Bounds(-half, -half, half, half),
         regions=regions_of(ground),
@@ -91,6 +92,7 @@ def build_world(district: str, *, seed: int, size_m: float, statistics: Statisti
         source=f"generated {district} seed={seed} size={size}",
         seed=seed,
     )
+    return rounded(world)
 
 
 def _zone(district: str) -> Zone:

@@ -18,6 +18,7 @@ from reasoned_explorer.world.osm.paths import PathIndex
 from reasoned_explorer.world.osm.reading import BoxDeg, Extract, read_extract
 from reasoned_explorer.world.osm.surfaces import passages_of, regions_of, ways_of
 from reasoned_explorer.world.osm.tags import class_of
+from reasoned_explorer.world.rounding import rounded
 from reasoned_explorer.world.world import Bounds, World
 
 #: Whom to thank wherever a picture or a figure of an imported world is shown.
@@ -113,7 +114,7 @@ def import_osm_with_report(
         warnings.append(f"{region_counts['loose ends of coastline']} loose ends of coastline led to the nearest edge")
     if region_counts["stretches of unclear coast"]:
         warnings.append("the coastline is broken; check where the sea is")
-    return world, ImportReport(bbox, extract.newest_edit, counts, tuple(warnings))
+    return rounded(world), ImportReport(bbox, extract.newest_edit, counts, tuple(warnings))
 
 
 def _checked(bbox: BoxDeg) -> BoxDeg:
