@@ -24,6 +24,7 @@ from reasoned_explorer.minds.ledger import CallRecord, Ledger
 from reasoned_explorer.minds.registry import make_minds
 from reasoned_explorer.model import Fault, LegOutcome, SettingsError, TrackPoint, UnknownNameError
 from reasoned_explorer.model.record import EpisodeRecord, MissionEnd, MissionHeader, MissionSummary, StepRecord
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.perception.context import CaptionerContext
 from reasoned_explorer.perception.registry import CAPTIONERS
 from reasoned_explorer.planning import Planner
@@ -142,6 +143,7 @@ class Mission:
         self.goal = self.spec.goal
         self.profile = vehicle_profile(self.settings.vehicle)
         traveller = traveller_of(self.profile)
+        stop_if_asked()
         self.judge = Judge(
             self.atlas,
             self.spec,
@@ -149,7 +151,9 @@ class Mission:
             success_radius_m=self.settings.success_radius_m,
             camera_height_m=self.profile.camera_height_m,
         )
+        stop_if_asked()
         self.start = self._start(start, traveller)
+        stop_if_asked()
         if self.settings.clock not in CLOCKS:
             raise UnknownNameError("clock", self.settings.clock, tuple(CLOCKS))
         self.clock = CLOCKS[self.settings.clock]()

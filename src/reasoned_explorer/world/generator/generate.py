@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.world.generator.affinity import Pull, Statistics
 from reasoned_explorer.world.generator.assemble import buildings_of, ground_of, regions_of, rings_of, ways_of
 from reasoned_explorer.world.generator.furniture import Furnisher, Thing, standing_size
@@ -53,6 +54,7 @@ def build_world(district: str, *, seed: int, size_m: float, statistics: Statisti
         [item.area for item in sketch.footprints],
         sketch.box,
     )
+    stop_if_asked()
     sites = find_sites(sketch, plan, crossings)
     furnisher = Furnisher(sketch, plan, sites, statistics=statistics, pull=pull or Pull())
     _stand_areas(sketch, furnisher)
@@ -63,7 +65,9 @@ def build_world(district: str, *, seed: int, size_m: float, statistics: Statisti
     trees, crowns = plant_trees(sketch, plan)
     _stand_bulk(sketch, furnisher, "tree", trees, headings=np.zeros(len(trees)), widths=crowns)
     _stand_hosts(sketch, furnisher)
+    stop_if_asked()
     furnisher.furnish()
+    stop_if_asked()
     bushes, widths = plant_bushes(sketch, plan)
     _stand_bulk(sketch, furnisher, "shrub", bushes, headings=np.zeros(len(bushes)), widths=widths)
     objects = tuple(

@@ -11,6 +11,7 @@ import shapely
 
 from reasoned_explorer.geometry import GeoOrigin
 from reasoned_explorer.model import Fault, WorldError
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.world.osm.buildings import buildings_of
 from reasoned_explorer.world.osm.features import features_of
 from reasoned_explorer.world.osm.furniture import objects_of
@@ -63,6 +64,7 @@ def import_osm(
 
     Raises:
         WorldError: The file or the bbox cannot be used, or the area is larger than 25 km².
+        KeyboardInterrupt: A person asked to stop.
     """
     return import_osm_with_report(path, bbox=bbox, seed=seed, name=name)[0]
 
@@ -75,6 +77,7 @@ def import_osm_with_report(
     if bbox is not None:
         bbox = _checked(bbox)
     extract = read_extract(file, box_deg=bbox)
+    stop_if_asked()
     warnings: list[str] = []
     if bbox is None:
         bbox = _whole(extract, file, warnings)
@@ -86,9 +89,12 @@ def import_osm_with_report(
             [Fault(f"nothing in {file.name} lies within {_show(bbox)}", "a bbox that the file covers",
                    f"the file covers {_show(extract.header_box_deg)}" if extract.header_box_deg else "check the bbox")],
         )  # fmt: skip
+    stop_if_asked()
     buildings = buildings_of(features.areas, features.points, passages_of(features.lines), bounds, seed=seed)
+    stop_if_asked()
     ways = ways_of(features.lines, features.points, bounds)
     regions, region_counts = regions_of(features.areas, features.lines, buildings.courtyards, bounds)
+    stop_if_asked()
     placed = objects_of(
         features.points, features.lines, features.areas,
         buildings=buildings, paths=PathIndex(ways), bounds=bounds, seed=seed,
