@@ -28,6 +28,8 @@ from tests.world.worlds import courtyard
 
 GOAL = Goal("Find me a bench", 1)
 ONE_SECOND = LatencyProfile("test", "1 s a call", *(RoleLatency(1.0, 0.0) for _ in range(4)))
+#: They know the world, and say so.
+PRIVILEGED = {"oracle", "foresight-30m", "foresight-60m", "perfect-halt"}
 HERE = Pose(55.0, 35.0, 1.5, 0.0)
 TEXTS = (
     "The image shows a park. In the foreground, on the left, there is a bench under a tree.",
@@ -84,7 +86,7 @@ def test_minds_answer_every_scene_in_range_and_the_same_each_time(name: str, atl
     assert (imagined, assessed, verdicts) == _ask(name, atlas)[:3]
 
 
-@pytest.mark.parametrize("name", [name for name in MINDS.names() if name != "oracle"])
+@pytest.mark.parametrize("name", [name for name in MINDS.names() if name not in PRIVILEGED])
 def test_minds_never_read_where_a_scene_lies(name: str, atlas: Atlas) -> None:
     clock = VirtualClock()
     minds: Minds = MINDS.load(name)(_context(clock, atlas))
@@ -96,7 +98,7 @@ def test_minds_never_read_where_a_scene_lies(name: str, atlas: Atlas) -> None:
     assert clock.run(ask(_scenes())) == clock.run(ask(elsewhere))
 
 
-@pytest.mark.parametrize("name", [name for name in MINDS.names() if name not in {"oracle", "scripted"}])
+@pytest.mark.parametrize("name", [name for name in MINDS.names() if name not in PRIVILEGED | {"scripted"}])
 def test_a_caption_that_gives_orders_is_not_obeyed(name: str, atlas: Atlas) -> None:
     _, assessed, verdicts, _ = _ask(name, atlas)
     assert not verdicts[2].found

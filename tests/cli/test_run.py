@@ -188,7 +188,7 @@ MOMENTS = {
     "while the world is made": (f"{ROOT}.world.generator.generate.find_sites", None),
     "while the mission is set up": (f"{ROOT}.world.geodesic.search", None),
     "while the agent looks": (f"{ROOT}.simulation.eyes_kernels.see_walls", "interrupted"),
-    "while it travels": (f"{ROOT}.simulation.vehicle.obstacles_on_leg", "interrupted"),
+    "while it travels": (f"{ROOT}.exploration.explorer._facing_onwards", "interrupted"),
     "while the map is drawn": (f"{ROOT}.evaluation.mission_map.paint_world", "found"),
 }
 

@@ -193,6 +193,8 @@ def test_a_goal_that_nothing_here_satisfies_is_refused_before_the_start() -> Non
 def test_unknown_names_are_refused_before_anything_is_written(tmp_path: Path) -> None:
     with pytest.raises(UnknownNameError, match="did you mean virtual"):
         Mission("Find me a bench", courtyard(), MissionSettings(clock="virtul"), start=Pose(50.0, 45.0))
+    with pytest.raises(UnknownNameError, match="did you mean guide"):
+        Mission("Find me a bench", courtyard(), MissionSettings(agent="giude"), start=Pose(50.0, 45.0))
 
 
 def test_a_record_is_not_written_over(tmp_path: Path) -> None:

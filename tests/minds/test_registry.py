@@ -27,3 +27,19 @@ def test_a_misspelt_name_answers_with_the_near_ones():
         make_minds(mind_context(), "embeded")
     with pytest.raises(UnknownNameError, match="scripted"):
         make_minds(mind_context(), checker="skripted")
+
+
+def test_unknowing_minds_are_the_embedded_ones_without_knowledge_of_places():
+    from reasoned_explorer.minds.embedded import default_senses, unknowing_senses
+    from reasoned_explorer.minds.embedded.relevance import relevance_of
+
+    assert make_minds(mind_context(), "embedded-unknowing").label.endswith("without knowledge of places")
+    knowing, unknowing = (senses(with_embedder=False) for senses in (default_senses, unknowing_senses))
+    goal = "Find me a trash can near a bench"
+    assert relevance_of(goal, knowing).context
+    assert not relevance_of(goal, unknowing).context
+    assert not any(relevance_of(goal, unknowing).ground.values())
+    # What a goal says of itself is no knowledge of places.
+    assert relevance_of(goal, unknowing).degrees == relevance_of(goal, knowing).degrees
+    asked = [[target.words for target in relevance_of(goal, senses).targets] for senses in (knowing, unknowing)]
+    assert asked == [["bench"], ["bench"]]

@@ -197,6 +197,24 @@ def test_compliant_ways():
     assert to_plaza == pytest.approx(truth, rel=0.02)
 
 
+def test_who_strays_less_keeps_farther_off_shunned_ground():
+    ways = geodesics_of(field(ground=Ground.PLAZA, regions=[Region(Ground.GRASS, box(20, 0, 80, 60))]))
+    lengths = [
+        length(
+            ways.path(
+                (10.0, 30.0),
+                (90.0, 30.0),
+                traveller=Traveller(flies=True, radius_m=0.0, collides=collides, strays_m=strays_m),
+                shunned=frozenset({Ground.GRASS}),
+            )
+        )
+        for collides in (True, False)
+        for strays_m in (2.0, 1.0, 0.0)
+    ]
+    assert lengths[0] < lengths[1] < lengths[2]
+    assert lengths[3:] == lengths[:3]
+
+
 def test_unknown_ground_is_neither_wanted_nor_shunned():
     geodesics = geodesics_of(field(ground=Ground.UNKNOWN, regions=[Region(Ground.PATH, box(0, 0, 100, 10))]))
     way = {"traveller": WALKER, "allowed": frozenset({Ground.PATH})}
@@ -277,3 +295,5 @@ def test_bad_input(court):
         court.field_m((5.0, 5.0), traveller=WALKER, max_m=math.nan)
     with pytest.raises(InputError, match="radius_m"):
         Traveller(flies=False, radius_m=math.nan)
+    with pytest.raises(InputError, match="strays_m"):
+        Traveller(flies=False, radius_m=0.0, strays_m=2.5)

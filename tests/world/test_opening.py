@@ -55,3 +55,26 @@ def test_only_maps_are_cropped(tmp_path: Path) -> None:
 def test_the_fingerprint_tells_worlds_apart() -> None:
     assert world_digest(open_world("plaza:4@150")) == world_digest(open_world("plaza:4@150"))
     assert world_digest(open_world("plaza:4@150")) != world_digest(open_world("plaza:5@150"))
+
+
+def test_a_world_is_named_with_the_permutation_of_its_labels(tmp_path: Path) -> None:
+    world = open_world("plaza:4@150~permuted:1")
+    assert world.name == "plaza:4@150~permuted:1"
+    assert world_digest(world) == world_digest(open_world("plaza@150~permuted:1", seed=4))
+    assert world_digest(world) != world_digest(open_world("plaza:4@150"))
+    assert world_digest(world) != world_digest(open_world("plaza:4@150~permuted:2"))
+    save_world(courtyard(), tmp_path / "court.rexworld")
+    assert open_world(str(tmp_path / "court.rexworld~permuted:3")).name == "courtyard~permuted:3"
+
+
+def test_a_real_place_is_permuted_within_its_bounding_box(osm_folder: Path) -> None:
+    box = (-123.3125, 48.4630, -123.3100, 48.4650)
+    world = open_world(f"{osm_folder / 'uvic-campus.osm.pbf'}~permuted:1", bbox=box)
+    assert world.name == "uvic-campus~permuted:1"
+    assert world.attribution
+
+
+@pytest.mark.parametrize("spec", ["plaza:4@150~permuted", "plaza:4@150~permuted:x", "~permuted:1"])
+def test_what_is_no_permutation_is_refused(spec: str) -> None:
+    with pytest.raises(WorldError):
+        open_world(spec)

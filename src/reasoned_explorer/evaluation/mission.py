@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from reasoned_explorer.clock import Clock, MixedClock, RealClock, VirtualClock
-from reasoned_explorer.evaluation.oracle import OracleTruth
+from reasoned_explorer.evaluation.guide import GUIDE_LABEL, Guide
 from reasoned_explorer.evaluation.record_file import RecordWriter
 from reasoned_explorer.evaluation.scoring import Look, MissionScore, outcome_of, score
+from reasoned_explorer.evaluation.truth import OracleTruth
 from reasoned_explorer.exploration.explorer import Exploration, Explorer, Parts
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
@@ -41,6 +42,8 @@ from reasoned_explorer.world.geodesic import Traveller
 from reasoned_explorer.world.world import World
 
 CLOCKS: Mapping[str, Callable[[], Clock]] = {"virtual": VirtualClock, "mixed": MixedClock, "real": RealClock}
+#: Who carries a mission out: the method's agent, or the bound that knows the shortest compliant way.
+AGENTS = ("explorer", "guide")
 #: A seeded random start is at least and at most this far, on the shortest compliant way, from being successful.
 START_RANGE_M = (60.0, 400.0)
 
@@ -63,6 +66,7 @@ class MissionSettings:
         explorer: How the agent explores.
         success_radius_m: R of the judge, metres.
         seed: Of the mission: everything that is drawn is keyed by it.
+        agent: One of `AGENTS`; the guide asks no planner, mind or captioner.
 
     A planner may bring settings of the agent with it (`planning.Planner`); a mission's own ``settings`` are those that
     are in force.
@@ -81,6 +85,7 @@ class MissionSettings:
     explorer: ExplorerSettings = field(default_factory=ExplorerSettings)
     success_radius_m: float = 15.0
     seed: int = 0
+    agent: str = "explorer"
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,6 +126,7 @@ class Mission:
         world: A world, or an atlas of one where several missions share it.
         settings: Who does what.
         start: Where it begins; None draws a start by the seed.
+        judge: A judge of this goal, world, vehicle and success radius from an earlier mission, to share its work with.
 
     Raises:
         GoalError: If the goal cannot be understood, or nothing in this world satisfies it.
@@ -136,28 +142,27 @@ class Mission:
         settings: MissionSettings | None = None,
         *,
         start: Pose | None = None,
+        judge: Judge | None = None,
     ) -> None:
         self.settings = settings or MissionSettings()
         self.atlas = world if isinstance(world, Atlas) else Atlas(world)
-        self.spec = read_goal(goal)
-        self.goal = self.spec.goal
         self.profile = vehicle_profile(self.settings.vehicle)
-        traveller = traveller_of(self.profile)
         stop_if_asked()
-        self.judge = Judge(
-            self.atlas,
-            self.spec,
-            traveller=traveller,
-            success_radius_m=self.settings.success_radius_m,
-            camera_height_m=self.profile.camera_height_m,
-        )
+        self.judge = judge or judge_of(goal, self.atlas, self.settings.vehicle, self.settings.success_radius_m)
+        self.spec = self.judge.spec
+        self.goal = self.spec.goal
         stop_if_asked()
-        self.start = self._start(start, traveller)
+        self.start = self._start(start, self.judge.traveller)
         stop_if_asked()
         if self.settings.clock not in CLOCKS:
             raise UnknownNameError("clock", self.settings.clock, tuple(CLOCKS))
         self.clock = CLOCKS[self.settings.clock]()
-        self.explorer = self._explorer()
+        if self.settings.agent not in AGENTS:
+            raise UnknownNameError("agent", self.settings.agent, AGENTS)
+        # Privileged minds and the guide alone may read the truth; they are the only ones that ask for it.
+        truth = OracleTruth(self.atlas, self.judge, self.profile, self.settings.explorer)
+        self.explorer: Explorer | Guide
+        self.explorer = self._guide(truth) if self.settings.agent == "guide" else self._explorer(truth)
 
     def run(self, *, folder: Path | None = None, on_step: Callable[[StepRecord], None] | None = None) -> MissionResult:
         """Run the mission to its end.
@@ -224,11 +229,13 @@ class Mission:
         )
         return replace(drawn, z_m=self.profile.camera_height_m)
 
-    def _explorer(self) -> Explorer:
+    def _guide(self, truth: OracleTruth) -> Guide:
+        self._labels = (GUIDE_LABEL, "no minds", "no captions")
+        return Guide(truth, self._vehicle(), self.clock)
+
+    def _explorer(self, truth: OracleTruth) -> Explorer:
         settings, ledger = self.settings, Ledger()
         latency = latency_profile(settings.latency)
-        # The oracle alone may read the truth; it is the only one that asks for it.
-        truth = OracleTruth(self.atlas, self.judge, self.profile, settings.explorer)
         minds = make_minds(
             MindContext(self.clock, latency, ledger, settings.seed, truth),
             settings.minds,
@@ -248,14 +255,17 @@ class Mission:
 
         captioner = CAPTIONERS.load(settings.captioner)(CaptionerContext(self.clock, settings.seed, charge_captions))
         planner = make_planner(settings.planner, minds, settings.planner_settings)
-        self._labels = (planner, minds.label, captioner.label)
+        self._labels = (planner.label, minds.label, captioner.label)
         explorer = _with_overrides(settings.explorer, planner)
         self.settings = replace(settings, explorer=explorer)
-        vehicle = SimulatedVehicle(
-            self.atlas, self.profile, self.start, clock=self.clock, eyes=Eyes(self.atlas), seed=settings.seed
-        )
-        parts = Parts(vehicle, captioner, planner, minds.checker, self.clock, ledger)
+        parts = Parts(self._vehicle(), captioner, planner, minds.checker, self.clock, ledger)
         return Explorer(parts, explorer)
+
+    def _vehicle(self) -> SimulatedVehicle:
+        eyes = Eyes(self.atlas)
+        return SimulatedVehicle(
+            self.atlas, self.profile, self.start, clock=self.clock, eyes=eyes, seed=self.settings.seed
+        )
 
     @property
     def header(self) -> MissionHeader:
@@ -271,7 +281,7 @@ class Mission:
             world_digest=self.atlas.digest,
             attribution=world.attribution,
             start=(round(start.x_m, 3), round(start.y_m, 3), round(start.z_m, 3), round(start.heading_rad, 6)),
-            planner=planner.label,
+            planner=planner,
             minds=minds_label,
             captioner=captioner_label,
             vehicle=self.profile.name,
@@ -408,6 +418,24 @@ def _finite(value: float | None) -> float | None:
 def traveller_of(profile: VehicleProfile) -> Traveller:
     """Return who the shortest ways are for: what a profile's body can pass."""
     return Traveller(flies=profile.flies, radius_m=profile.radius_m, collides=profile.collides)
+
+
+def judge_of(goal: str, atlas: Atlas, vehicle: str, success_radius_m: float) -> Judge:
+    """Return the judge of a goal in a world for a vehicle.
+
+    Raises:
+        GoalError: If the goal cannot be understood.
+        UnknownNameError: If there is no such vehicle.
+        SettingsError: If the radius is out of range.
+    """
+    profile = vehicle_profile(vehicle)
+    return Judge(
+        atlas,
+        read_goal(goal),
+        traveller=traveller_of(profile),
+        success_radius_m=success_radius_m,
+        camera_height_m=profile.camera_height_m,
+    )
 
 
 def track_of(start: Pose, steps: list[StepRecord]) -> list[TrackPoint]:

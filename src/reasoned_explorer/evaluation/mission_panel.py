@@ -109,7 +109,7 @@ def _heading(sheet: Sheet, x: float, y: float, text: str) -> None:
 
 
 def _write_legend(sheet: Sheet, trace: MissionTrace, x: float, y: float, bottom_pt: float) -> float:
-    for text, draw in _entries(sheet, trace):
+    for text, draw in legend_entries(sheet, trace):
         if y - _LEGEND_ROW_PT < bottom_pt:
             return y
         y -= _LEGEND_ROW_PT
@@ -118,8 +118,8 @@ def _write_legend(sheet: Sheet, trace: MissionTrace, x: float, y: float, bottom_
     return y - 6.0
 
 
-def _entries(sheet: Sheet, trace: MissionTrace) -> list[tuple[str, Callable[[float, float], None]]]:
-    """The legend: only what the picture really has in it."""
+def legend_entries(sheet: Sheet, trace: MissionTrace) -> list[tuple[str, Callable[[float, float], None]]]:
+    """Return the legend, each entry with who draws its mark: only what the picture really has in it."""
     page = sheet.page
     states = {frontier.state for frontier in trace.frontiers}
 

@@ -20,8 +20,28 @@ MINDS = Registry(
             "reasoned_explorer.minds.embedded:make_words_minds",
             "the embedded minds without MiniLM, present or not",
         ),
+        Entry(
+            "embedded-unknowing",
+            "reasoned_explorer.minds.embedded:make_unknowing_minds",
+            "the embedded minds without knowledge of places: what they lack is the advantage of knowledge",
+        ),
         Entry("scripted", "reasoned_explorer.minds.scripted:make_minds", "answers from rules, for tests"),
         Entry("oracle", "reasoned_explorer.evaluation.oracle:make_minds", "reads the truth: an upper bound, no method"),
+        Entry(
+            "foresight-30m",
+            "reasoned_explorer.evaluation.privileged:make_foresight_30m",
+            "an evaluator that knows the way within 30 m beyond each frontier, else footpaths: a bound, no method",
+        ),
+        Entry(
+            "foresight-60m",
+            "reasoned_explorer.evaluation.privileged:make_foresight_60m",
+            "likewise, 60 m",
+        ),
+        Entry(
+            "perfect-halt",
+            "reasoned_explorer.evaluation.privileged:make_perfect_halt",
+            "a checker that the judge agrees with, in an ordinary checker's time: a bound, no method",
+        ),
     ),
 )
 

@@ -59,7 +59,7 @@ class FollowPaths:
 
     async def plan(self, goal: Goal, scenes: Sequence[Scene]) -> Plan:  # noqa: ARG002 - the protocol's
         """Return a score by the ground that leads ahead."""
-        return Plan(tuple(_score(scene, _path_score(scene.text)) for scene in scenes))
+        return Plan(tuple(_score(scene, path_score(scene.text)) for scene in scenes))
 
 
 class ObjectDensity:
@@ -109,7 +109,8 @@ def _is_thing(mention: Mention) -> bool:
     return mention.concept is None or concepts()[mention.concept].kind not in _NO_THINGS
 
 
-def _path_score(text: str) -> float:
+def path_score(text: str) -> float:
+    """Return how gladly a scene's text is followed, by the ground that it says leads ahead."""
     ground = read_scene(text).ground_ahead
     return _NO_PATH_SCORE if ground is None else _PATH_SCORES.get(ground, _NO_PATH_SCORE)
 

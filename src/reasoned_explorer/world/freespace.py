@@ -38,15 +38,24 @@ class Traveller:
         flies: Low above the ground: over water and rails, but not through buildings and what stands about.
         radius_m: Of its body, metres, in [0, 5].
         collides: Whether anything stops it at all.
+        strays_m: So far from ground that is not shunned it goes on shunned ground, metres, in [0, 2]; a judge
+            tolerates 2 m, and who errs by a little on its way had better keep to less.
     """
 
     flies: bool
     radius_m: float
     collides: bool = True
+    strays_m: float = SHUNNED_TOLERANCE_M
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.radius_m <= _MAX_RADIUS_M:
-            raise InputError("traveller", [Fault(f"radius_m = {self.radius_m}", f"a number in [0, {_MAX_RADIUS_M:g}]")])
+        limits = {"radius_m": (self.radius_m, _MAX_RADIUS_M), "strays_m": (self.strays_m, SHUNNED_TOLERANCE_M)}
+        faults = [
+            Fault(f"{name} = {value}", f"a number in [0, {most:g}]")
+            for name, (value, most) in limits.items()
+            if not 0.0 <= value <= most
+        ]
+        if faults:
+            raise InputError("traveller", faults)
 
     @property
     def impassable(self) -> frozenset[Ground]:
@@ -175,7 +184,7 @@ class FreeSpaceMaker:
         passable, shunned_codes = ~_flags(traveller.impassable), _flags(shunned - traveller.impassable)
         coarsen(self._ground.codes, self._factor, passable, shunned_codes, blocked, marked)
         if shunned:
-            blocked = close_shunned(blocked, marked, SHUNNED_TOLERANCE_M / self.grid.cell_m)
+            blocked = close_shunned(blocked, marked, traveller.strays_m / self.grid.cell_m)
         if traveller.collides:
             self._block_solids(blocked, traveller.radius_m)
         return FreeSpace(self.grid, clearance_of(blocked))

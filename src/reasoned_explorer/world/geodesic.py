@@ -139,7 +139,7 @@ class Geodesics:
     ) -> FreeSpace:
         """Return where a traveller can stand; kept for the next question."""
         if not traveller.collides:
-            traveller = Traveller(flies=True, radius_m=0.0, collides=False)
+            traveller = Traveller(flies=True, radius_m=0.0, collides=False, strays_m=traveller.strays_m)
         key = (traveller, _shunned(shunned, allowed) - traveller.impassable)
         if key in self._spaces:
             self._spaces.move_to_end(key)

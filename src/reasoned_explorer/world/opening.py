@@ -2,7 +2,8 @@
 
 ``park``, ``park:7`` (seed 7), ``park:7@600`` (600 m across), ``town.osm.pbf``, ``town.osm``, ``kept.rexworld``, or a
 name that another package registered under the entry-point group ``reasoned_explorer.worlds``, whose factory is called
-as ``factory(seed=…, size_m=…)`` and returns a `World`.
+as ``factory(seed=…, size_m=…)`` and returns a `World`. With ``~permuted:1`` behind any of these the labels of its
+things are permuted in place by that seed (`reasoned_explorer.world.permuted`).
 """
 
 import re
@@ -19,6 +20,7 @@ DEFAULT_SIZE_M = 400.0
 KEPT_SUFFIX = ".rexworld"
 _OSM_SUFFIXES = (".osm", ".pbf", ".osm.gz", ".osm.bz2", ".xml")
 _NAME = re.compile(r"(?P<name>[A-Za-z][\w-]*)(?::(?P<seed>\d{1,18}))?(?:@(?P<size>\d+(?:\.\d+)?))?")
+_PERMUTED = re.compile(r"(?P<spec>.+)~permuted:(?P<seed>\d{1,18})")
 
 
 def open_world(
@@ -41,6 +43,12 @@ def open_world(
         UnknownNameError: If there is no such district or registered world.
         SettingsError: If seed or size are out of range.
     """
+    permuted = _PERMUTED.fullmatch(spec)
+    if permuted is not None:
+        from reasoned_explorer.world.permuted import permute_labels
+
+        inner = open_world(permuted["spec"], seed=seed, size_m=size_m, bbox=bbox)
+        return permute_labels(inner, seed=int(permuted["seed"]))
     lowered = spec.lower()
     if lowered.endswith(KEPT_SUFFIX) or lowered.endswith(_OSM_SUFFIXES) or "/" in spec:
         return _open_file(Path(spec), seed=seed, bbox=bbox)

@@ -2,6 +2,7 @@
 
 import csv
 import os
+from contextlib import suppress
 from pathlib import Path
 
 from reasoned_explorer.evaluation.bench.store import RunStore
@@ -28,7 +29,8 @@ def export(store: RunStore, path: Path) -> int:
         count = _csv(store, half) if path.suffix == ".csv" else _parquet(store, half)
         half.replace(path)
     except OSError as error:
-        half.unlink(missing_ok=True)
+        with suppress(OSError):
+            half.unlink(missing_ok=True)
         raise RecordWriteError(f"export: {path} cannot be written: {error.strerror}") from error
     return count
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from reasoned_explorer.evaluation.methods import BOUND_METHODS, PERFECT_HALT
 from reasoned_explorer.evaluation.metrics import Metric, MetricTable, aggregate, compare
 from reasoned_explorer.evaluation.paper import PAPER_NOTE, PAPER_TABLES
 from reasoned_explorer.evaluation.row import MissionRow
@@ -153,8 +154,12 @@ def main_sheet(results: Results, *, title: str, notes: Sequence[str] = ()) -> Sh
 
 def label_of(row: MissionRow) -> str:
     """Return what a table's row is called: method, whose minds, and how its thinking time came about."""
+    if row.method in BOUND_METHODS:
+        return f"{row.method} [a bound: knows the world], CT {row.ct_label}"
     _, bracket, minds = row.planner.partition("[")
-    return f"{row.method}{f' [{minds}' if bracket else ''}, CT {row.ct_label}"
+    halt = "; the judge halts, a bound" if row.method.endswith(f"+{PERFECT_HALT}") else ""
+    who = f" [{minds.rstrip(']')}{halt}]" if bracket else ""
+    return f"{row.method}{who}, CT {row.ct_label}"
 
 
 def more_sheet(results: Results) -> Sheet:

@@ -24,6 +24,17 @@ def make_words_minds(context: MindContext) -> Minds:
     return minds_with(context, default_senses(with_embedder=False))
 
 
+def make_unknowing_minds(context: MindContext) -> Minds:
+    """Return the embedded minds without knowledge of places: no statistics, no expectations of kinds of scenes.
+
+    They know words and what serves what as `make_minds` do. What these find more often on the same missions is the
+    advantage of knowing what stands near what.
+    """
+    from reasoned_explorer.minds.embedded.embedding import model_folder
+
+    return minds_with(context, unknowing_senses(with_embedder=model_folder() is not None))
+
+
 @cache
 def default_senses(*, with_embedder: bool) -> "Senses":
     """Return what the embedded minds know by default.
@@ -38,10 +49,21 @@ def default_senses(*, with_embedder: bool) -> "Senses":
     return Senses(load_cooccurrence(), load_embedder() if with_embedder else None)
 
 
+@cache
+def unknowing_senses(*, with_embedder: bool) -> "Senses":
+    """Return what the embedded minds know without knowledge of places; the argument is that of `default_senses`."""
+    from reasoned_explorer.minds.embedded.embedding import load_embedder
+    from reasoned_explorer.minds.embedded.relevance import Senses
+
+    return Senses(None, load_embedder() if with_embedder else None, scene_knowledge=False)
+
+
 def minds_with(context: MindContext, senses: "Senses") -> Minds:
     """Return the embedded minds with given senses, e.g. with statistics whose labels are permuted."""
     from reasoned_explorer.minds.embedded.roles import EmbeddedMinds
 
     minds = EmbeddedMinds(context, senses)
     label = f"{LABEL}, {'with MiniLM' if senses.embedder is not None else 'words and lexicon only'}"
+    if senses.statistics is None and not senses.scene_knowledge:
+        label += ", without knowledge of places"
     return Minds(label=label, evaluator=minds, visionary=minds, checker=minds)

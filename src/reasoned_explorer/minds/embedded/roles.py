@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 
+from reasoned_explorer.minds.charging import charge_calls
 from reasoned_explorer.minds.context import MindContext
 from reasoned_explorer.minds.embedded.checker import verdict_on
 from reasoned_explorer.minds.embedded.evaluator import assess
 from reasoned_explorer.minds.embedded.relevance import Senses
 from reasoned_explorer.minds.embedded.visionary import imagine_texts
-from reasoned_explorer.minds.ledger import CallRecord
 from reasoned_explorer.model import Assessment, Goal, Scene, Verdict
 
 #: So many entries of a scene's key say which view it belongs to: step, look, index.
@@ -39,7 +39,7 @@ class EmbeddedMinds:
             for scene in scenes
         ]
         faults = [answer.fault for answer in answers]
-        await self._charge("evaluator", [scene.key for scene in scenes], faults)
+        await charge_calls(self._context, "evaluator", "embedded", [scene.key for scene in scenes], faults)
         return answers
 
     async def imagine(
@@ -52,7 +52,9 @@ class EmbeddedMinds:
         """Return ``count`` imagined scenes for each scene, in order, whatever the goal is."""
         imagined = [self._children(scene, count) for scene in scenes]
         made = [child for children in imagined for child in children]
-        await self._charge("visionary", [child.key for child in made], [child.fault for child in made])
+        await charge_calls(
+            self._context, "visionary", "embedded", [child.key for child in made], [child.fault for child in made]
+        )
         return imagined
 
     async def check(self, goal: Goal, scenes: Sequence[Scene]) -> Sequence[Verdict]:
@@ -68,7 +70,7 @@ class EmbeddedMinds:
             for scene in scenes
         ]
         faults = [answer.fault for answer in answers]
-        await self._charge("checker", [scene.key for scene in scenes], faults)
+        await charge_calls(self._context, "checker", "embedded", [scene.key for scene in scenes], faults)
         return answers
 
     def _children(self, scene: Scene, count: int) -> list[Scene]:
@@ -83,16 +85,3 @@ class EmbeddedMinds:
         draws = (scene.depth, *scene.key[_VIEW_KEY:])
         texts = imagine_texts(scene.text, seed=self._context.seed, key=draws, count=count, senses=self._senses)
         return [Scene(text, (*scene.key, child), scene.waypoint, depth) for child, text in enumerate(texts)]
-
-    async def _charge(self, role: str, keys: Sequence[tuple[int, ...]], faults: Sequence[str | None]) -> None:
-        """Write the calls down, then let the slowest one's seconds pass: a cancelled call was made all the same."""
-        if not keys:
-            return
-        context = self._context
-        seconds = context.latency.batch_s(role, context.seed, keys)
-        started_s = context.clock.now_s()
-        context.ledger.add_all(
-            CallRecord(role, "embedded", key, started_s, second, fault=fault)
-            for key, second, fault in zip(keys, seconds, faults, strict=True)
-        )
-        await context.clock.think(max(seconds))
