@@ -1,5 +1,6 @@
 """`rex run` and `rex show`, as a person types them."""
 
+import importlib
 import os
 import signal
 import subprocess
@@ -163,6 +164,62 @@ def test_a_person_may_stop_a_mission_and_its_record_says_so(tmp_path: Path) -> N
     assert record.summary.end == "interrupted"
     assert not record.complete
     assert "interrupted" in _rex("show", "run")[1]
+
+
+def _pressed_in_compiled_code(monkeypatch: pytest.MonkeyPatch, where: str, *, times: int = 1) -> None:
+    """Have Ctrl-C come in the middle of something compiled, which makes another error of `KeyboardInterrupt`."""
+    module, _, name = where.rpartition(".")
+    whole = getattr(importlib.import_module(module), name)
+    presses = iter(range(times))
+
+    def pressed(*args: object, **kwargs: object) -> object:
+        try:
+            for _ in presses:
+                os.kill(os.getpid(), signal.SIGINT)
+            return whole(*args, **kwargs)
+        except KeyboardInterrupt:
+            raise SystemError(f"{name} returned a result with an exception set") from None
+
+    monkeypatch.setattr(f"{module}.{name}", pressed)
+
+
+ROOT = "reasoned_explorer"
+MOMENTS = {
+    "while the world is made": (f"{ROOT}.world.generator.generate.find_sites", None),
+    "while the mission is set up": (f"{ROOT}.world.geodesic.search", None),
+    "while the agent looks": (f"{ROOT}.simulation.eyes_kernels.see_walls", "interrupted"),
+    "while it travels": (f"{ROOT}.exploration.explorer._facing_onwards", "interrupted"),
+    "while the map is drawn": (f"{ROOT}.evaluation.mission_map.paint_world", "found"),
+}
+
+
+@pytest.mark.parametrize("times", [1, 2])
+@pytest.mark.parametrize("moment", MOMENTS)
+def test_ctrl_c_is_clean_whatever_it_comes_in_the_middle_of(
+    moment: str, times: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    where, end = MOMENTS[moment]
+    _pressed_in_compiled_code(monkeypatch, where, times=times)
+    code, shown = _rex("run", "Find me a bench", *FAST[:-1], "--minds", "oracle", "--out", "run")
+    assert code == 130, shown
+    assert "rex: stopped" in shown
+    assert "Traceback" not in shown
+    if end is None:
+        assert list(tmp_path.iterdir()) == []
+    elif times == 1:
+        summary = read_record(tmp_path / "run").summary
+        assert summary is not None
+        assert summary.end == end
+
+
+def test_a_mistake_in_a_part_is_no_mission_without_success(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*args: object) -> None:
+        raise ZeroDivisionError("a mistake")
+
+    monkeypatch.setattr("reasoned_explorer.simulation.eyes_kernels.see_walls", broken)
+    code, shown = _rex("run", "Find me a bench", *FAST)
+    assert code == 3
+    assert "rex: a part failed: ZeroDivisionError: a mistake" in shown
 
 
 def test_a_killed_mission_leaves_whole_steps_marked_incomplete(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import functools
 import sys
+import traceback
 from collections.abc import Callable
 from enum import IntEnum
 from typing import ParamSpec
@@ -9,6 +10,7 @@ from typing import ParamSpec
 import typer
 
 from reasoned_explorer.model import PartError, ReasonedExplorerError, RecordWriteError
+from reasoned_explorer.model.stopping import listening, stop_was_asked
 
 P = ParamSpec("P")
 
@@ -24,24 +26,38 @@ class ExitCode(IntEnum):
 
 
 def answering(command: Callable[P, None]) -> Callable[P, None]:
-    """Return a command whose expected errors are answered in words and with their exit code."""
+    """Return a command whose errors are answered in words and with their exit code, and that stops when asked to."""
 
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
-        try:
-            command(*args, **kwargs)
-        except ReasonedExplorerError as error:
-            complain(str(error))
-            raise typer.Exit(code_of(error)) from error
-        except KeyboardInterrupt:
-            complain("stopped")
-            raise typer.Exit(ExitCode.STOPPED) from None
-        except BrokenPipeError:
-            # Whoever read the output (head, less) has seen enough.
-            sys.stderr.close()
-            raise typer.Exit(ExitCode.FOUND) from None
+        with listening():
+            try:
+                command(*args, **kwargs)
+            except (typer.Exit, typer.Abort, typer.BadParameter):
+                raise
+            except BrokenPipeError:
+                # Whoever read the output (head, less) has seen enough.
+                sys.stderr.close()
+                raise typer.Exit(ExitCode.FOUND) from None
+            except (Exception, KeyboardInterrupt) as error:
+                raise typer.Exit(_answer(error)) from error
 
     return run
+
+
+def _answer(error: BaseException) -> ExitCode:
+    """Say what went wrong and return the exit code."""
+    if isinstance(error, KeyboardInterrupt) or stop_was_asked():
+        # Asked twice, work stops wherever it is; compiled code makes another error of that.
+        complain("stopped")
+        return ExitCode.STOPPED
+    if isinstance(error, ReasonedExplorerError):
+        complain(str(error))
+        return code_of(error)
+    # A mistake in a part, ours or somebody else's: who mends it needs to know where.
+    traceback.print_exception(error)
+    complain(f"a part failed: {type(error).__name__}: {error}")
+    return ExitCode.PART_FAILED
 
 
 def code_of(error: ReasonedExplorerError) -> ExitCode:

@@ -15,6 +15,7 @@ from reasoned_explorer.evaluation.mission import Mission, MissionResult, Mission
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.model import Fault, RecordError
 from reasoned_explorer.model.record import MissionEnd, StepRecord
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.planning.setting_pairs import parse_planner_settings
 from reasoned_explorer.world.files import save_world
 from reasoned_explorer.world.opening import KEPT_SUFFIX, open_world
@@ -87,8 +88,11 @@ def run_from_options(options: RunOptions) -> None:
     settings = options.settings()
     if not options.quiet and not _kernels_are_compiled():
         console.print("compiling the kernels, which takes up to a minute (the first time only) …", markup=False)
+    stop_if_asked()
     world = open_world(options.world, seed=options.seed, bbox=parse_bbox(options.bbox))
+    stop_if_asked()
     mission = Mission(options.goal, world, settings, start=parse_start(options.start, world))
+    stop_if_asked()
     folder = _folder(options)
     if not options.quiet:
         for line in header_lines(mission.header):
@@ -117,8 +121,10 @@ def _kernels_are_compiled() -> bool:
 
 
 def _keep(result: MissionResult, folder: Path, *, draw: bool) -> None:
+    stop_if_asked()
     save_world(result.world, folder / WORLD_NAME)
     if draw:
+        stop_if_asked()
         result.draw_map(folder / MAP_NAME)
 
 

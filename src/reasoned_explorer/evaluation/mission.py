@@ -25,6 +25,7 @@ from reasoned_explorer.minds.ledger import CallRecord, Ledger
 from reasoned_explorer.minds.registry import make_minds
 from reasoned_explorer.model import Fault, LegOutcome, SettingsError, TrackPoint, UnknownNameError
 from reasoned_explorer.model.record import EpisodeRecord, MissionEnd, MissionHeader, MissionSummary, StepRecord
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.perception.context import CaptionerContext
 from reasoned_explorer.perception.registry import CAPTIONERS
 from reasoned_explorer.planning import Planner
@@ -146,10 +147,13 @@ class Mission:
         self.settings = settings or MissionSettings()
         self.atlas = world if isinstance(world, Atlas) else Atlas(world)
         self.profile = vehicle_profile(self.settings.vehicle)
+        stop_if_asked()
         self.judge = judge or judge_of(goal, self.atlas, self.settings.vehicle, self.settings.success_radius_m)
         self.spec = self.judge.spec
         self.goal = self.spec.goal
+        stop_if_asked()
         self.start = self._start(start, self.judge.traveller)
+        stop_if_asked()
         if self.settings.clock not in CLOCKS:
             raise UnknownNameError("clock", self.settings.clock, tuple(CLOCKS))
         self.clock = CLOCKS[self.settings.clock]()

@@ -13,6 +13,7 @@ from pathlib import Path
 from reasoned_explorer.geometry import GeoOrigin
 from reasoned_explorer.model import Fault, SettingsError, StartError, WorldError
 from reasoned_explorer.model.draws import key_of
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.task.sampling import EpisodeDealer, SamplingSettings
 from reasoned_explorer.task.split import BANDS_M, LEVELS, Place, Split, SplitEpisode
 from reasoned_explorer.world.atlas import Atlas
@@ -175,6 +176,7 @@ class Dealing:
             )
             first = first or dealer
             for level in LEVELS:
+                stop_if_asked()
                 for _ in range(cells.get((level, band), 0)):
                     try:
                         episode = dealer.deal(level)

@@ -6,6 +6,7 @@ from reasoned_explorer.world.digest import world_digest
 from reasoned_explorer.world.geodesic import Geodesics
 from reasoned_explorer.world.index import ObjectIndex
 from reasoned_explorer.world.raster import GroundRaster
+from reasoned_explorer.world.rounding import rounded
 from reasoned_explorer.world.sight import SightLines
 from reasoned_explorer.world.world import World
 
@@ -14,11 +15,11 @@ class Atlas:
     """A world with its indices.
 
     Args:
-        world: The world; it is never changed.
+        world: The world; it is never changed. A world that is finer than files keep it is asked about as they do.
     """
 
     def __init__(self, world: World) -> None:
-        self.world = world
+        self.world = rounded(world)
 
     @cached_property
     def digest(self) -> str:

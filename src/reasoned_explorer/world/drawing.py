@@ -8,6 +8,7 @@ from pathlib import Path
 from matplotlib.patches import Circle, Patch, Rectangle
 
 from reasoned_explorer.model.errors import Fault, WorldError
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.world.drawing_style import Palette, mix, printable, width_pt, wrapped
 from reasoned_explorer.world.lettering import Room, letter_places, letter_streets, place_badges
 from reasoned_explorer.world.painting import Board, paint_world
@@ -124,10 +125,13 @@ def compose(world: World, *, bounds: Bounds, labels: bool, title: str) -> Sheet:
     axes = sheet.map_axes(MARGIN_PT, foot, map_width, map_height, shown)
     board = Board(axes, shown, shown.width_m / map_width, sheet.palette)
     paint_world(board, world)
+    stop_if_asked()
     room = Room(board)
     if labels:
         letter_streets(board, world.ways, room, colour="#4a4f57")
+    stop_if_asked()
     place_badges(board, world.objects, room)
+    stop_if_asked()
     if labels:
         letter_places(board, world, room)
     _write_head(sheet, headline, _summary(world))

@@ -2,11 +2,11 @@
 
 The document is ``{"format": "rexworld", "version": 1, "world": {...}}``. Lengths are whole millimetres; of a ring or
 line the first point is given by its coordinates and every other by its step from the one before, all in one flat list.
-Headings are radians, rounded to 1e-6. Ground is called by its lower-case name. What has its default value is left out.
+Headings are radians, rounded to 1e-6 (`rounding`). Ground is called by its lower-case name. What has its default value
+is left out.
 """
 
 import gzip
-import math
 import os
 import tempfile
 import zlib
@@ -20,6 +20,7 @@ from pydantic_core import from_json, to_json
 
 from reasoned_explorer.geometry import GeoOrigin
 from reasoned_explorer.model import Fault, PartError, WorldError
+from reasoned_explorer.world.rounding import rounded
 from reasoned_explorer.world.taxonomy import OBJECT_CLASSES, Ground
 from reasoned_explorer.world.validation import check_world, near_misses
 from reasoned_explorer.world.world import Bounds, Building, Region, Ring, Way, World, WorldObject
@@ -92,7 +93,8 @@ class _WorldPart(_Part):
 def save_world(world: World, path: str | Path) -> None:
     """Write a world to a file; the same world gives the same bytes.
 
-    The file appears whole or not at all. Coordinates and sizes are rounded to 1 mm.
+    The file appears whole or not at all. What is kept is the world as `rounded` returns it, exactly: a world that was
+    made here, or opened, is so already and comes back as it was.
 
     Args:
         world: The world.
@@ -105,6 +107,7 @@ def save_world(world: World, path: str | Path) -> None:
     target = Path(path)
     if target.suffix != SUFFIX:
         raise WorldError("world file", [Fault(f"the name {target.name!r}", f"one that ends in {SUFFIX}")])
+    world = rounded(world)
     check_world(world)
     document = {"format": FORMAT, "version": VERSION, "world": _part_of(world).model_dump(exclude_defaults=True)}
     data = gzip.compress(to_json(document), compresslevel=6, mtime=0)
@@ -143,7 +146,7 @@ def load_world(path: str | Path) -> World:
         raise WorldError(subject, faults) from error
     if faults := _name_faults(part):
         raise WorldError(subject, faults)
-    world = _world_of(part)
+    world = rounded(_world_of(part))
     check_world(world)
     return world
 
@@ -212,11 +215,11 @@ def _flats(part: _WorldPart) -> Iterable[tuple[str, _Flat]]:
 
 
 def _mm(value_m: float) -> int:
-    return math.floor(value_m * 1000.0 + 0.5)
+    return round(value_m * 1000.0)
 
 
 def _flat(points: Ring) -> _Flat:
-    whole = np.floor(np.asarray(points, dtype=np.float64) * 1000.0 + 0.5).astype(np.int64)
+    whole = np.rint(np.asarray(points, dtype=np.float64) * 1000.0).astype(np.int64)
     whole[1:] -= whole[:-1].copy()
     steps: _Flat = whole.ravel().tolist()
     return steps
@@ -278,8 +281,8 @@ def _object_part(item: WorldObject) -> _ObjectPart:
         cls=item.class_name,
         at=[_mm(item.x_m), _mm(item.y_m)],
         size=[_mm(value) for value in item.size_m],
-        heading=round(float(item.heading_rad), 6),
-        attributes=dict(sorted(item.attributes.items())),
+        heading=float(item.heading_rad),
+        attributes=dict(item.attributes),
         outline=None if item.outline is None else _flat(item.outline),
         building=item.building,
     )

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from reasoned_explorer.model import Fault, UnknownNameError, WorldError
 from reasoned_explorer.registry import Registry
+from reasoned_explorer.world.rounding import rounded
 from reasoned_explorer.world.world import World
 
 WORLDS = Registry("world", "worlds", ())
@@ -84,4 +85,4 @@ def _make(name: str, seed: int, size_m: float) -> World:
     world = WORLDS.load(name)(seed=seed, size_m=size_m)
     if not isinstance(world, World):
         raise WorldError(f"world {name}", [Fault(f"its factory returned {type(world).__name__}", "a World")])
-    return world
+    return rounded(world)

@@ -23,6 +23,7 @@ from matplotlib.transforms import IdentityTransform
 from numpy.typing import NDArray
 
 from reasoned_explorer.model.errors import Fault, InputError
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.world.drawing_style import Palette, font, printable, set_in, width_pt
 from reasoned_explorer.world.symbols import Symbol, compound_path
 from reasoned_explorer.world.world import Bounds
@@ -306,9 +307,11 @@ def save(sheet: Sheet, path: Path, *, width_px: int, title: str, thanks: str, er
     metadata: dict[str, str | None] = {undated: None}
     metadata.update({key: text for key, text in (("Title", title), (thanks_key, thanks)) if text})
     picture = BytesIO()
+    stop_if_asked()
     sheet.figure.savefig(
         picture, format=suffix[1:], dpi=width_px / WIDTH_IN, metadata=metadata, facecolor=sheet.palette.paper
     )
+    stop_if_asked()
     handle, unfinished = -1, ""
     try:
         handle, unfinished = tempfile.mkstemp(prefix=f".{path.name[:40]}.", suffix=".part", dir=path.parent)

@@ -7,9 +7,12 @@ from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
 from reasoned_explorer.evaluation.bench.pools import MAX_TRIES, lost
 from reasoned_explorer.evaluation.bench.worker import Done, run_task
 from reasoned_explorer.model import Fault, MissingDependencyError, SettingsError
+from reasoned_explorer.model.stopping import stop_if_asked
 
 #: Missions handed out ahead for each processor of the cluster.
 _AHEAD = 2
+#: So often it is looked whether a person asks to stop, seconds.
+_LOOK_EVERY_S = 0.5
 
 
 def run_on_ray(plan: BenchPlan, tasks: Sequence[Task], *, address: str, workers: int | None = None) -> Iterator[Done]:
@@ -44,7 +47,10 @@ def run_on_ray(plan: BenchPlan, tasks: Sequence[Task], *, address: str, workers:
                     break
             if not under_way:
                 return
-            ready, _ = ray.wait(list(under_way), num_returns=1)
+            ready: list[Any] = []
+            while not ready:
+                stop_if_asked()
+                ready, _ = ray.wait(list(under_way), num_returns=1, timeout=_LOOK_EVERY_S)
             for reference in ready:
                 task = under_way.pop(reference)
                 try:

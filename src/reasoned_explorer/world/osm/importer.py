@@ -11,6 +11,7 @@ import shapely
 
 from reasoned_explorer.geometry import GeoOrigin
 from reasoned_explorer.model import Fault, WorldError
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.world.osm.buildings import buildings_of
 from reasoned_explorer.world.osm.features import features_of
 from reasoned_explorer.world.osm.furniture import objects_of
@@ -18,6 +19,7 @@ from reasoned_explorer.world.osm.paths import PathIndex
 from reasoned_explorer.world.osm.reading import BoxDeg, Extract, read_extract
 from reasoned_explorer.world.osm.surfaces import passages_of, regions_of, ways_of
 from reasoned_explorer.world.osm.tags import class_of
+from reasoned_explorer.world.rounding import rounded
 from reasoned_explorer.world.world import Bounds, World
 
 #: Whom to thank wherever a picture or a figure of an imported world is shown.
@@ -62,6 +64,7 @@ def import_osm(
 
     Raises:
         WorldError: The file or the bbox cannot be used, or the area is larger than 25 km².
+        KeyboardInterrupt: A person asked to stop.
     """
     return import_osm_with_report(path, bbox=bbox, seed=seed, name=name)[0]
 
@@ -74,6 +77,7 @@ def import_osm_with_report(
     if bbox is not None:
         bbox = _checked(bbox)
     extract = read_extract(file, box_deg=bbox)
+    stop_if_asked()
     warnings: list[str] = []
     if bbox is None:
         bbox = _whole(extract, file, warnings)
@@ -85,9 +89,12 @@ def import_osm_with_report(
             [Fault(f"nothing in {file.name} lies within {_show(bbox)}", "a bbox that the file covers",
                    f"the file covers {_show(extract.header_box_deg)}" if extract.header_box_deg else "check the bbox")],
         )  # fmt: skip
+    stop_if_asked()
     buildings = buildings_of(features.areas, features.points, passages_of(features.lines), bounds, seed=seed)
+    stop_if_asked()
     ways = ways_of(features.lines, features.points, bounds)
     regions, region_counts = regions_of(features.areas, features.lines, buildings.courtyards, bounds)
+    stop_if_asked()
     placed = objects_of(
         features.points, features.lines, features.areas,
         buildings=buildings, paths=PathIndex(ways), bounds=bounds, seed=seed,
@@ -113,7 +120,7 @@ def import_osm_with_report(
         warnings.append(f"{region_counts['loose ends of coastline']} loose ends of coastline led to the nearest edge")
     if region_counts["stretches of unclear coast"]:
         warnings.append("the coastline is broken; check where the sea is")
-    return world, ImportReport(bbox, extract.newest_edit, counts, tuple(warnings))
+    return rounded(world), ImportReport(bbox, extract.newest_edit, counts, tuple(warnings))
 
 
 def _checked(bbox: BoxDeg) -> BoxDeg:
