@@ -7,7 +7,7 @@ first and 3 for the second.
 
 import difflib
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +49,11 @@ class InputError(ReasonedExplorerError):
         self.subject = subject
         self.faults = tuple(faults)
         super().__init__(subject, self.faults)
+
+    @property
+    def named_faults(self) -> tuple[Fault, ...]:
+        """The faults, each with its subject in front: for an error that gathers those of several inputs."""
+        return tuple(replace(fault, what=f"{self.subject}: {fault.what}") for fault in self.faults)
 
     def __str__(self) -> str:
         if len(self.faults) == 1:

@@ -87,9 +87,9 @@ class BenchPlan:
             try:
                 check()
             except InputError as error:
-                faults += error.faults
+                faults += error.named_faults
         if self.base.clock not in CLOCKS:
-            faults += UnknownNameError("clock", self.base.clock, tuple(CLOCKS)).faults
+            faults += UnknownNameError("clock", self.base.clock, tuple(CLOCKS)).named_faults
         seeds = tuple(str(seed) for seed in self.seeds)
         for what, listed in (("planners", self.methods), ("vehicles", self.vehicles), ("seeds", seeds)):
             if not listed or len(set(listed)) < len(listed):

@@ -28,6 +28,8 @@ from reasoned_explorer.model.record import EpisodeRecord
 
 STORE_NAME = "run.sqlite"
 TRACES_NAME = "traces"
+#: What is wrong with a run of which nothing can be shown yet.
+NOTHING_FINISHED = Fault("no mission is finished", "at least one", "go on with rex bench --resume")
 _STORE_VERSION = 1
 _KEY = ("vehicle", "method", "mission_id")
 #: Columns of the view, from a row's JSON.
