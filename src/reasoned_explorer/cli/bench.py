@@ -1,10 +1,9 @@
 """``rex bench``, ``rex compare``, ``rex export``: many missions, and what comes of them."""
 
-import math
 import os
 import shlex
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -35,9 +34,9 @@ from reasoned_explorer.evaluation.bench.tables import (
     vehicles_sheet,
 )
 from reasoned_explorer.evaluation.methods import methods
-from reasoned_explorer.evaluation.mission import MissionSettings
+from reasoned_explorer.evaluation.mission_settings import MissionSettings
 from reasoned_explorer.exploration.settings import ExplorerSettings
-from reasoned_explorer.model import Fault, InputError, SettingsError
+from reasoned_explorer.model import Fault, Gathering, InputError, SettingsError
 from reasoned_explorer.task.split import Place, Split
 from reasoned_explorer.task.splitting import Dealing, ceiling_casr, generated_places, places_of_worlds
 from reasoned_explorer.vehicles.registry import vehicle_profile
@@ -173,11 +172,11 @@ def _plan(options: BenchOptions, names: Sequence[str]) -> BenchPlan:
         SettingsError: With everything that is wrong with what was typed.
         InputError: If no split can be made of it.
     """
-    faults: list[Fault] = []
-    chosen = _sound(faults, lambda: methods(names))
-    explorer = _sound(faults, lambda: ExplorerSettings(t_max_s=options.t_max_min * 60.0))
-    seeds = _sound(faults, lambda: parse_seeds(options.seeds))
-    levels = _sound(faults, lambda: parse_levels(options.levels))
+    found = Gathering()
+    chosen = found.take(lambda: methods(names), None)
+    explorer = found.take(lambda: ExplorerSettings(t_max_s=options.t_max_min * 60.0), ExplorerSettings())
+    seeds = found.take(lambda: parse_seeds(options.seeds), (0,))
+    levels = found.take(lambda: parse_levels(options.levels), ())
     base = MissionSettings(
         minds=options.minds,
         visionary=options.visionary,
@@ -186,40 +185,31 @@ def _plan(options: BenchOptions, names: Sequence[str]) -> BenchPlan:
         captioner=options.captioner,
         latency=options.latency,
         clock=options.clock,
-        explorer=explorer or ExplorerSettings(),
+        explorer=explorer,
         success_radius_m=options.radius_m,
     )
-    unmade = _sound(
-        faults,
+    unmade = found.take(
         lambda: BenchPlan(
             split=Split("unmade", 0, (), (), {}),
             methods=tuple(item.name for item in chosen) if chosen else ("random",),
             vehicles=tuple(name.strip() for name in options.vehicle.split(",") if name.strip()),
             base=base,
-            seeds=seeds or (0,),
+            seeds=seeds,
             keep_traces=options.traces,
         ),
+        None,
     )
-    workers = _sound(faults, lambda: options.who)
+    workers = found.take(lambda: options.who, None)
     if options.per_cell is not None and not 1 <= options.per_cell <= 1000:
-        faults.append(Fault(f"--per-cell {options.per_cell}", "1 to 1,000"))
-    if not (math.isfinite(options.radius_m) and 1.0 <= options.radius_m <= 50.0):
-        faults.append(Fault(f"--radius {options.radius_m}", "1 to 50 m"))
+        found.add(SettingsError("--per-cell", [Fault(f"{options.per_cell}", "1 to 1,000")]))
     if options.out is not None and options.out.exists() and not _is_empty(options.out):
-        faults.append(Fault(f"--out {options.out} is there", "a new or empty folder", "or --resume it"))
-    places = _sound(faults, lambda: _places(options))
-    if faults or unmade is None or workers is None or places is None or levels is None:
-        raise SettingsError("benchmark", faults)
+        fault = Fault(f"{options.out} is there", "a new or empty folder", "or go on with it: --resume")
+        found.add(SettingsError("--out", [fault]))
+    places = found.take(lambda: _places(options), None)
+    found.finish("benchmark")
+    if unmade is None or workers is None or places is None:  # their errors were raised
+        raise AssertionError
     return replace(unmade, split=_split(options, *places, levels=levels, workers=workers.count))
-
-
-def _sound(faults: list[Fault], make: Callable[[], T]) -> T | None:
-    """Return what is made; what is wrong with it joins the faults."""
-    try:
-        return make()
-    except InputError as error:
-        faults += error.named_faults
-        return None
 
 
 def _is_empty(folder: Path) -> bool:

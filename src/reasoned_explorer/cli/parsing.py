@@ -6,8 +6,11 @@ from reasoned_explorer.geometry import Pose, normalise_heading_rad
 from reasoned_explorer.model import Fault, SettingsError, StartError, WorldError
 from reasoned_explorer.world.world import World
 
+#: lon0, lat0, lon1, lat1.
+BoxDeg = tuple[float, float, float, float]
 
-def parse_bbox(text: str | None) -> tuple[float, float, float, float] | None:
+
+def parse_bbox(text: str | None) -> BoxDeg | None:
     """Return lon0, lat0, lon1, lat1 in degrees; what they must satisfy is the importer's to say.
 
     Raises:
@@ -19,6 +22,18 @@ def parse_bbox(text: str | None) -> tuple[float, float, float, float] | None:
     if faults:
         raise WorldError(f"bounding box {text!r}", [*faults, Fault("a bounding box", "lon0,lat0,lon1,lat1 in degrees")])
     return numbers[0], numbers[1], numbers[2], numbers[3]
+
+
+def check_start_form(text: str | None) -> None:
+    """Check what can be known of a start before its world is there: that it is two or three finite numbers.
+
+    Raises:
+        StartError: If it is not.
+    """
+    faults = [] if text is None else _numbers(text, 3 if text.count(",") != 1 else 2)[1]
+    if faults:
+        form = "lat,lon,heading in degrees in a real place, x,y,heading in metres and degrees elsewhere"
+        raise StartError(f"start {text!r} (expected {form})", faults)
 
 
 def parse_start(text: str | None, world: World) -> Pose | None:

@@ -8,10 +8,18 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from reasoned_explorer.geometry import GeoOrigin
-from reasoned_explorer.model import Fault, InputError, SettingsError, StartError, UnknownNameError, WorldError
+from reasoned_explorer.model import (
+    Fault,
+    Gathering,
+    SettingsError,
+    StartError,
+    UnknownNameError,
+    WorldError,
+)
 from reasoned_explorer.model.draws import key_of
 from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.task.sampling import EpisodeDealer, SamplingSettings
@@ -88,12 +96,10 @@ def places_of_worlds(
     if len(set(worlds)) < len(worlds):
         raise SettingsError("worlds", [Fault(f"{', '.join(worlds)}", "each world once")])
     places: list[Place] = []
-    faults: list[Fault] = []
+    found = Gathering()
     for source in worlds:
-        try:
-            world = open_world(source, bbox=bbox)
-        except InputError as error:
-            faults += error.named_faults
+        world = found.take(partial(open_world, source, bbox=bbox), None)
+        if world is None:
             continue
         if world.origin is None:
             places.append(Place(source, source, district=source.partition(":")[0].partition("@")[0]))
@@ -103,8 +109,7 @@ def places_of_worlds(
             Place(f"{city}#{number}", source, tile, city)
             for number, tile in enumerate(_neighbourhoods_deg(world.bounds, world.origin))
         ]
-    if faults:
-        raise WorldError("worlds", faults)
+    found.finish("worlds")
     return tuple(places)
 
 
