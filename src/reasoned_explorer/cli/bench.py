@@ -175,8 +175,9 @@ def _plan(options: BenchOptions, names: Sequence[str]) -> BenchPlan:
     found = Gathering()
     chosen = found.take(lambda: methods(names), None)
     explorer = found.take(lambda: ExplorerSettings(t_max_s=options.t_max_min * 60.0), ExplorerSettings())
-    seeds = found.take(lambda: parse_seeds(options.seeds), (0,))
-    levels = found.take(lambda: parse_levels(options.levels), ())
+    nothing: tuple[int, ...] = ()
+    seeds = found.take(lambda: parse_seeds(options.seeds), nothing) or (0,)
+    levels = found.take(lambda: parse_levels(options.levels), nothing)
     base = MissionSettings(
         minds=options.minds,
         visionary=options.visionary,
