@@ -232,15 +232,30 @@ def test_a_killed_mission_leaves_whole_steps_marked_incomplete(tmp_path: Path) -
     assert "INCOMPLETE" in _rex("show", "run")[1]
 
 
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
-def test_a_full_disk_ends_a_mission_in_words() -> None:
+def _rex_with_files_up_to(most_bytes: int, *arguments: str) -> "subprocess.CompletedProcess[str]":
+    """Run `rex` on a disk that is full for every file of so many bytes."""
     script = (
-        "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
-        "resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000))\n"
+        f"import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, ({most_bytes}, {most_bytes}))\n"
         "from reasoned_explorer.cli import main; sys.argv = ['rex', *sys.argv[1:]]; main()"
     )
+    return subprocess.run([sys.executable, "-c", script, *arguments], capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("most_bytes", [0, 1024])
+def test_a_disk_that_is_full_before_the_first_step_leaves_nothing(most_bytes: int, tmp_path: Path) -> None:
+    ended = _rex_with_files_up_to(most_bytes, "run", "Find me a bench", *FAST, "--out", "runs/run")
+    assert ended.returncode == 3, ended.stdout + ended.stderr
+    assert "ulimit -f" in ended.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_ends_a_mission_in_words() -> None:
     goal = ["run", "Find me a museum", "--world", "town:1@500", "--out", "run", "--no-map"]
-    ended = subprocess.run([sys.executable, "-c", script, *goal], capture_output=True, text=True, check=False)
+    ended = _rex_with_files_up_to(60_000, *goal)
     assert ended.returncode == 3, ended.stdout + ended.stderr
     assert "cannot be written" in ended.stderr
-    assert read_record(Path("run")).summary is None
+    assert Path("run/record.jsonl").read_bytes().endswith(b"}\n")
+    record = read_record(Path("run"))
+    assert record.steps
+    assert not record.complete
+    assert "File too large" in _rex("show", "run")[1]

@@ -2,7 +2,7 @@
 
 import gc
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cache
 from importlib.metadata import version
@@ -23,7 +23,7 @@ from reasoned_explorer.minds.context import MindContext
 from reasoned_explorer.minds.latency import latency_profile
 from reasoned_explorer.minds.ledger import CallRecord, Ledger
 from reasoned_explorer.minds.registry import make_minds
-from reasoned_explorer.model import Fault, LegOutcome, SettingsError, TrackPoint, UnknownNameError
+from reasoned_explorer.model import Fault, LegOutcome, RecordWriteError, SettingsError, TrackPoint, UnknownNameError
 from reasoned_explorer.model.record import EpisodeRecord, MissionEnd, MissionHeader, MissionSummary, StepRecord
 from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.perception.context import CaptionerContext
@@ -172,7 +172,9 @@ class Mission:
             on_step: Called with each step's record as soon as the step is over.
 
         Raises:
-            RecordError: If the record cannot be written; the mission ends at once and what was written stays.
+            RecordError: If no record can be begun in the folder.
+            RecordWriteError: If the record cannot be written on; the mission ends at once, and the record at its last
+                whole step. Before the first one nothing is left.
             KeyboardInterrupt: If a person stops it; the record then says so and ends at its last whole step.
         """
         header = self.header
@@ -202,16 +204,26 @@ class Mission:
             with _rare_collections():
                 exploration = self.clock.run(self.explorer.run(self.goal))
         except KeyboardInterrupt:
-            stopped = self._exploration_so_far(steps)
-            summary, _ = self._summary(header, stopped, steps)
-            if writer is not None:
-                writer.summary(summary)
+            self._break_off("stopped by a person", header, steps, writer)
+            raise
+        except RecordWriteError as error:
+            # A summary is short: often there is room for it where there was none for a step.
+            with suppress(RecordWriteError):
+                self._break_off(str(error), header, steps, writer)
             raise
         summary, score = self._summary(header, exploration, steps)
         if writer is not None:
             writer.summary(summary)
         folder = writer.path.parent if writer is not None else None
         return MissionResult(EpisodeRecord(header, tuple(steps), summary), self.atlas.world, score, folder)
+
+    def _break_off(
+        self, reason: str, header: MissionHeader, steps: list[StepRecord], writer: RecordWriter | None
+    ) -> None:
+        """Have the record say why it ends here."""
+        if writer is not None:
+            stopped = self._exploration_so_far(steps, reason)
+            writer.summary(self._summary(header, stopped, steps)[0])
 
     def _start(self, start: Pose | None, traveller: Traveller) -> Pose:
         if start is not None:
@@ -309,11 +321,11 @@ class Mission:
             for index, grade in self.judge.satisfying
         )
 
-    def _exploration_so_far(self, steps: list[StepRecord]) -> Exploration:
+    def _exploration_so_far(self, steps: list[StepRecord], reason: str) -> Exploration:
         last = steps[-1] if steps else None
         plan_s = sum(step.plan_s for step in steps)
         ct_s, tt_s = (last.ct_s, last.tt_s) if last else (0.0, 0.0)
-        return Exploration(MissionEnd.INTERRUPTED, "stopped by a person", ct_s, tt_s, plan_s, len(steps))
+        return Exploration(MissionEnd.INTERRUPTED, reason, ct_s, tt_s, plan_s, len(steps))
 
     def _summary(
         self, header: MissionHeader, ended: Exploration, steps: list[StepRecord]
