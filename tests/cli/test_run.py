@@ -249,6 +249,31 @@ def test_a_disk_that_is_full_before_the_first_step_leaves_nothing(most_bytes: in
     assert list(tmp_path.iterdir()) == []
 
 
+FULL = {
+    "a map of a world": (3, ["worlds", "draw", "plaza:1@150", "plaza.png"]),
+    "a world": (3, ["worlds", "generate", "plaza:1@150", "--out", "plaza.rexworld"]),
+    "a place that is not there": (2, ["worlds", "generate", "plaza:1@150", "--out", "nowhere/plaza.rexworld"]),
+}
+
+
+@pytest.mark.parametrize("what", FULL)
+def test_a_full_disk_is_no_bad_input_whatever_is_written(what: str, tmp_path: Path) -> None:
+    code, arguments = FULL[what]
+    ended = _rex_with_files_up_to(2048, *arguments)
+    assert ended.returncode == code, ended.stdout + ended.stderr
+    assert ("ulimit -f" in ended.stderr) == (code == 3)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_disk_that_is_full_when_the_map_is_drawn_leaves_the_whole_record() -> None:
+    arguments = ["run", "Find me a bench", *FAST[:-1], "--minds", "oracle", "--max-steps", "3", "--out", "run"]
+    ended = _rex_with_files_up_to(150_000, *arguments)
+    assert ended.returncode == 3, ended.stdout + ended.stderr
+    assert "disk: run/map.png cannot be written" in ended.stderr
+    assert {path.name for path in Path("run").iterdir()} == {"record.jsonl", "world.rexworld"}
+    assert read_record(Path("run")).complete
+
+
 def test_a_full_disk_ends_a_mission_in_words() -> None:
     goal = ["run", "Find me a museum", "--world", "town:1@500", "--out", "run", "--no-map"]
     ended = _rex_with_files_up_to(60_000, *goal)

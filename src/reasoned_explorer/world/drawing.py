@@ -70,7 +70,8 @@ def draw_world(
         title: Headline; the world's name if None.
 
     Raises:
-        WorldError: If the bounds or the width are no good or the file cannot be written; with all the reasons.
+        WorldError: If the bounds or the width are no good or the file cannot be written there; with all the reasons.
+        PartError: If the disk fails, e.g. because it is full.
     """
     target = Path(path)
     shown = world.bounds if bounds is None else bounds

@@ -19,7 +19,8 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 from pydantic_core import from_json, to_json
 
 from reasoned_explorer.geometry import GeoOrigin
-from reasoned_explorer.model import Fault, PartError, WorldError
+from reasoned_explorer.model import Fault, WorldError
+from reasoned_explorer.model.disk import disk_error
 from reasoned_explorer.world.rounding import rounded
 from reasoned_explorer.world.taxonomy import OBJECT_CLASSES, Ground
 from reasoned_explorer.world.validation import check_world, near_misses
@@ -113,11 +114,8 @@ def save_world(world: World, path: str | Path) -> None:
     data = gzip.compress(to_json(document), compresslevel=6, mtime=0)
     try:
         _replace(target, data)
-    except (FileNotFoundError, NotADirectoryError, IsADirectoryError, PermissionError) as error:
-        what = f"{target} cannot be written: {error.strerror}"
-        raise WorldError("world file", [Fault(what, "a folder that exists and can be written to")]) from error
     except OSError as error:
-        raise PartError("disk", f"{target} could not be written: {error.strerror or error}") from error
+        raise disk_error("world file", target, error, kind=WorldError) from error
 
 
 def load_world(path: str | Path) -> World:
@@ -172,7 +170,7 @@ def _document(source: Path, subject: str) -> Any:
 
 
 def _replace(target: Path, data: bytes) -> None:
-    handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
+    handle, name = tempfile.mkstemp(prefix=f".{target.name[:40]}.", dir=target.parent)
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(data)

@@ -22,6 +22,7 @@ from matplotlib.text import Text
 from matplotlib.transforms import IdentityTransform
 from numpy.typing import NDArray
 
+from reasoned_explorer.model.disk import disk_error
 from reasoned_explorer.model.errors import Fault, InputError
 from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.world.drawing_style import Palette, font, printable, set_in, width_pt
@@ -299,7 +300,10 @@ def save(sheet: Sheet, path: Path, *, width_px: int, title: str, thanks: str, er
         width_px: Width of a PNG.
         title: Kept in the file.
         thanks: Attribution, kept in the file.
-        error: Raised, with the reason, when the file cannot be written.
+        error: Raised, with the reason, when the file cannot be written there.
+
+    Raises:
+        PartError: If the disk fails, e.g. because it is full.
     """
     suffix = path.suffix.lower()
     title, thanks = printable(title), printable(thanks)
@@ -323,12 +327,7 @@ def save(sheet: Sheet, path: Path, *, width_px: int, title: str, thanks: str, er
         if unfinished:
             with suppress(OSError):
                 Path(unfinished).unlink(missing_ok=True)
-        fault = Fault(
-            f"{str(path)!r} could not be written: {reason.strerror or reason}",
-            "a folder with space in it that may be written to",
-            "choose another place",
-        )
-        raise error("map picture", [fault]) from reason
+        raise disk_error("map picture", path, reason, kind=error) from reason
 
 
 def swatch(sheet: Sheet, x_pt: float, y_pt: float, colour: str, *, hatch: str | None = None) -> None:

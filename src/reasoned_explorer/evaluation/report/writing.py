@@ -19,6 +19,7 @@ from reasoned_explorer.evaluation.report.study import Study
 from reasoned_explorer.evaluation.report.tables import Table, Value
 from reasoned_explorer.evaluation.row import MissionRow
 from reasoned_explorer.model import Fault, RecordError
+from reasoned_explorer.model.disk import disk_error
 
 PAGE_NAME = "index.html"
 
@@ -43,6 +44,7 @@ def write_report(
     Raises:
         InputError: If the rows cannot be a report: none, a mission twice, two T_max in one method, an unknown end.
         RecordError: If the folder is none of a report or cannot be written; what was there stays.
+        PartError: If the disk fails, e.g. because it is full; likewise.
     """
     study = Study(rows, about)
     _check_target(folder)
@@ -58,11 +60,7 @@ def write_report(
     try:
         _replace_folder(folder, contents)
     except OSError as error:
-        fault = Fault(
-            f"{str(folder)!r} could not be written: {error.strerror or error}",
-            "a folder with space in it that may be written to",
-        )
-        raise RecordError("report", [fault]) from error
+        raise disk_error("report", folder, error, kind=RecordError) from error
     return folder / PAGE_NAME
 
 
