@@ -249,6 +249,35 @@ def test_a_disk_that_is_full_before_the_first_step_leaves_nothing(most_bytes: in
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
+@pytest.mark.parametrize("command", [["show", "run"], ["worlds", "inspect", "plaza:1@150"], ["names"]])
+def test_output_that_cannot_be_written_is_answered_in_words(command: list[str]) -> None:
+    if command[0] == "show":
+        _rex("run", "Find me a bench", *FAST, "--minds", "oracle", "--out", "run")
+    with Path("/dev/full").open("w") as full:
+        whole = [sys.executable, "-m", "reasoned_explorer", *command]
+        ended = subprocess.run(whole, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert ended.returncode == 3, ended.stderr
+    assert ended.stderr.startswith("rex: the output cannot be written: No space left on device")
+    assert len(ended.stderr.splitlines()) == 1
+
+
+def test_a_name_that_is_too_long_is_bad_input(tmp_path: Path) -> None:
+    long = "n" * 300
+    for more in (
+        ["--out", long],
+        ["--out", f"{long}/run"],
+        ["--world", f"{long}.osm"],
+        ["--world", f"{long}.rexworld"],
+    ):
+        code, shown = _rex("run", "Find me a bench", *FAST, *more)
+        assert code == 2, shown
+        assert "Traceback" not in shown
+    assert _rex("worlds", "draw", "plaza:1@150", f"{long}.png")[0] == 2
+    assert _rex("show", long)[0] == 2
+    assert list(tmp_path.iterdir()) == []
+
+
 FULL = {
     "a map of a world": (3, ["worlds", "draw", "plaza:1@150", "plaza.png"]),
     "a world": (3, ["worlds", "generate", "plaza:1@150", "--out", "plaza.rexworld"]),

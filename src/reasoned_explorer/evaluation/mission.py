@@ -23,7 +23,19 @@ from reasoned_explorer.minds.context import MindContext
 from reasoned_explorer.minds.latency import latency_profile
 from reasoned_explorer.minds.ledger import CallRecord, Ledger
 from reasoned_explorer.minds.registry import make_minds
-from reasoned_explorer.model import Fault, LegOutcome, RecordWriteError, SettingsError, TrackPoint, UnknownNameError
+from reasoned_explorer.model import (
+    Fault,
+    InputError,
+    LegOutcome,
+    RecordError,
+    RecordWriteError,
+    SettingsError,
+    StartError,
+    TrackPoint,
+    UnknownNameError,
+    WorldError,
+)
+from reasoned_explorer.model.checks import is_within, kind_faults, number_faults, path_of, seed_faults
 from reasoned_explorer.model.record import EpisodeRecord, MissionEnd, MissionHeader, MissionSummary, StepRecord
 from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.perception.context import CaptionerContext
@@ -32,7 +44,7 @@ from reasoned_explorer.planning import Planner
 from reasoned_explorer.planning.registry import make_planner
 from reasoned_explorer.simulation.eyes import Eyes
 from reasoned_explorer.simulation.vehicle import SimulatedVehicle, check_start
-from reasoned_explorer.task.judge import Judge, TrackReport
+from reasoned_explorer.task.judge import RADIUS_RANGE_M, Judge, TrackReport
 from reasoned_explorer.task.reading import read_goal
 from reasoned_explorer.task.sampling import SamplingSettings, sample_start
 from reasoned_explorer.vehicles import VehicleProfile
@@ -70,6 +82,10 @@ class MissionSettings:
 
     A planner may bring settings of the agent with it (`planning.Planner`); a mission's own ``settings`` are those that
     are in force.
+
+    Raises:
+        SettingsError: If a value is of another kind than it should be, NaN, or out of range; with all faults. Whether a
+            name is registered is the mission's to say.
     """
 
     planner: str = "llm-rrt"
@@ -86,6 +102,20 @@ class MissionSettings:
     success_radius_m: float = 15.0
     seed: int = 0
     agent: str = "explorer"
+
+    def __post_init__(self) -> None:
+        faults = seed_faults(self.seed)
+        low_m, high_m = RADIUS_RANGE_M
+        if not is_within(self.success_radius_m, low_m, high_m):
+            faults.append(Fault(f"success_radius_m is {self.success_radius_m!r}", f"metres in [{low_m:g}, {high_m:g}]"))
+        for name in ("planner", "minds", "captioner", "vehicle", "latency", "clock", "agent"):
+            faults += kind_faults(name, getattr(self, name), str, "a name")
+        for name in ("visionary", "evaluator", "checker"):
+            faults += kind_faults(name, getattr(self, name), (str, type(None)), "a name, or None")
+        faults += kind_faults("planner_settings", self.planner_settings, Mapping, "names and values")
+        faults += kind_faults("explorer", self.explorer, ExplorerSettings, "ExplorerSettings")
+        if faults:
+            raise SettingsError("mission settings", faults)
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +145,7 @@ class MissionResult:
         """Draw what happened on a map, PNG, SVG or PDF by the path's suffix."""
         from reasoned_explorer.evaluation.record_map import draw_record
 
-        draw_record(self.world, self.record, Path(path))
+        draw_record(self.world, self.record, path_of(path, "map picture", RecordError))
 
 
 class Mission:
@@ -130,9 +160,11 @@ class Mission:
 
     Raises:
         GoalError: If the goal cannot be understood, or nothing in this world satisfies it.
-        StartError: If no mission can begin at the start, or no start can be found.
+        StartError: If the start is none or no mission can begin at it, or no start can be found.
+        WorldError: If the world is none.
         UnknownNameError: If a name is not registered.
-        SettingsError: If settings are out of range.
+        SettingsError: If settings are none or out of range.
+        InputError: If several of the arguments are of another kind than they should be; with all faults.
     """
 
     def __init__(
@@ -144,6 +176,7 @@ class Mission:
         start: Pose | None = None,
         judge: Judge | None = None,
     ) -> None:
+        _check_arguments(world, settings, start)
         self.settings = settings or MissionSettings()
         self.atlas = world if isinstance(world, Atlas) else Atlas(world)
         self.profile = vehicle_profile(self.settings.vehicle)
@@ -393,6 +426,21 @@ class Mission:
         return f"the nearest is {end.nearest_m:.0f} m away" if np.isfinite(end.nearest_m) else "there is none"
 
 
+def _check_arguments(world: object, settings: object, start: object) -> None:
+    made = "open_world makes one of a name or a file"
+    found: dict[type[InputError], list[Fault]] = {
+        WorldError: kind_faults("world", world, (World, Atlas), "a World or an Atlas", made),
+        SettingsError: kind_faults("settings", settings, (MissionSettings, type(None)), "MissionSettings, or None"),
+        StartError: kind_faults("start", start, (Pose, type(None)), "a Pose, or None for a random one"),
+    }
+    if isinstance(start, Pose):
+        found[StartError] += number_faults((f"start.{name}", value) for name, value in asdict(start).items())
+    kinds = [kind for kind, faults in found.items() if faults]
+    if kinds:
+        kind = kinds[0] if len(kinds) == 1 else InputError
+        raise kind("mission", [fault for faults in found.values() for fault in faults])
+
+
 def _with_overrides(settings: ExplorerSettings, planner: Planner) -> ExplorerSettings:
     """Return the agent's settings with those that belong to a planner.
 
@@ -483,4 +531,4 @@ def run_mission(
 ) -> MissionResult:
     """Run one mission; see `Mission` for the arguments and what it raises."""
     mission = Mission(goal, world, settings, start=start)
-    return mission.run(folder=Path(folder) if folder is not None else None, on_step=on_step)
+    return mission.run(folder=path_of(folder, "folder", RecordError) if folder is not None else None, on_step=on_step)

@@ -14,6 +14,7 @@ from typing import Any, Self
 from pydantic import TypeAdapter, ValidationError
 
 from reasoned_explorer.model import Fault, RecordError, RecordWriteError
+from reasoned_explorer.model.checks import path_of
 from reasoned_explorer.model.disk import disk_error, in_words
 from reasoned_explorer.model.record import RECORD_SCHEMA, EpisodeRecord, MissionHeader, MissionSummary, StepRecord
 
@@ -106,7 +107,7 @@ class RecordWriter:
         self._whole_bytes += len(line)
 
 
-def read_record(folder: Path) -> EpisodeRecord:
+def read_record(folder: Path | str) -> EpisodeRecord:
     """Return the record in a folder (or the record file itself).
 
     A last line that was cut off is left out.
@@ -114,8 +115,10 @@ def read_record(folder: Path) -> EpisodeRecord:
     Raises:
         RecordError: If there is no record, it is of another version, or a line other than the last is broken.
     """
-    path = folder / RECORD_NAME if folder.is_dir() else folder
+    path = path_of(folder, "record", RecordError)
     try:
+        if path.is_dir():
+            path /= RECORD_NAME
         data = path.read_bytes()
     except OSError as error:
         fault = Fault(f"{path}: {error.strerror}", "the folder of a run", "rex run leaves one")

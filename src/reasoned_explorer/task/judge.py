@@ -78,6 +78,10 @@ class TrackReport:
         return dict(self.end.at_radius)[radius_m] and self.compliance.compliant
 
 
+#: Least and greatest success radius, metres.
+RADIUS_RANGE_M = (1.0, 50.0)
+
+
 class Judge:
     """Judges missions with one goal in one world.
 
@@ -104,8 +108,9 @@ class Judge:
         grader: Grader | None = None,
     ) -> None:
         faults = []
-        if not 1.0 <= success_radius_m <= 50.0:
-            faults.append(Fault(f"success_radius_m is {success_radius_m}", "metres in [1, 50]"))
+        low_m, high_m = RADIUS_RANGE_M
+        if not low_m <= success_radius_m <= high_m:
+            faults.append(Fault(f"success_radius_m is {success_radius_m}", f"metres in [{low_m:g}, {high_m:g}]"))
         if not 0.0 <= camera_height_m <= 100.0:
             faults.append(Fault(f"camera_height_m is {camera_height_m}", "metres in [0, 100]"))
         if faults:

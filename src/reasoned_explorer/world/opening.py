@@ -9,7 +9,8 @@ things are permuted in place by that seed (`reasoned_explorer.world.permuted`).
 import re
 from pathlib import Path
 
-from reasoned_explorer.model import Fault, UnknownNameError, WorldError
+from reasoned_explorer.model import Fault, SettingsError, UnknownNameError, WorldError
+from reasoned_explorer.model.checks import kind_faults, seed_faults
 from reasoned_explorer.registry import Registry
 from reasoned_explorer.world.rounding import rounded
 from reasoned_explorer.world.world import World
@@ -43,6 +44,10 @@ def open_world(
         UnknownNameError: If there is no such district or registered world.
         SettingsError: If seed or size are out of range.
     """
+    if faults := kind_faults("the name", spec, str, "text such as park:7 or town.osm.pbf"):
+        raise WorldError("world", faults)
+    if faults := seed_faults(seed):
+        raise SettingsError("world", faults)
     permuted = _PERMUTED.fullmatch(spec)
     if permuted is not None:
         from reasoned_explorer.world.permuted import permute_labels

@@ -22,6 +22,7 @@ from matplotlib.text import Text
 from matplotlib.transforms import IdentityTransform
 from numpy.typing import NDArray
 
+from reasoned_explorer.model.checks import is_there, is_within
 from reasoned_explorer.model.disk import disk_error
 from reasoned_explorer.model.errors import Fault, InputError
 from reasoned_explorer.model.stopping import stop_if_asked
@@ -281,13 +282,13 @@ def check_target(path: Path, width_px: int) -> list[Fault]:
     faults: list[Fault] = []
     if path.suffix.lower() not in SUFFIXES:
         faults.append(Fault(f"picture file {str(path)!r}", f"a name that ends in {', '.join(SUFFIXES)}"))
-    if not path.parent.is_dir():
+    if not is_there(path.parent) or not path.parent.is_dir():
         faults.append(Fault(f"folder {str(path.parent)!r} is not there", "an existing folder", "create it first"))
-    if path.is_dir():
+    if is_there(path) and path.is_dir():
         faults.append(Fault(f"{str(path)!r} is a folder", "the name of a file"))
     low, high = WIDTH_RANGE_PX
-    if not low <= width_px <= high:
-        faults.append(Fault(f"picture width {width_px}", f"{low} to {high} pixels"))
+    if not is_within(width_px, low, high):
+        faults.append(Fault(f"picture width {width_px!r}", f"{low} to {high} pixels"))
     return faults
 
 
