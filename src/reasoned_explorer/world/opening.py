@@ -53,7 +53,7 @@ def open_world(
         from reasoned_explorer.world.permuted import permute_labels
 
         inner = open_world(permuted["spec"], seed=seed, size_m=size_m, bbox=bbox)
-        return permute_labels(inner, seed=int(permuted["seed"]))
+        return rounded(permute_labels(inner, seed=int(permuted["seed"])))
     lowered = spec.lower()
     if lowered.endswith(KEPT_SUFFIX) or lowered.endswith(_OSM_SUFFIXES) or "/" in spec:
         return _open_file(Path(spec), seed=seed, bbox=bbox)
