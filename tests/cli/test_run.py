@@ -249,15 +249,84 @@ def test_a_killed_mission_leaves_whole_steps_marked_incomplete(tmp_path: Path) -
     assert "INCOMPLETE" in _rex("show", "run")[1]
 
 
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
-def test_a_full_disk_ends_a_mission_in_words() -> None:
+def _rex_with_files_up_to(most_bytes: int, *arguments: str) -> "subprocess.CompletedProcess[str]":
+    """Run `rex` on a disk that is full for every file of so many bytes."""
     script = (
-        "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
-        "resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000))\n"
+        f"import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, ({most_bytes}, {most_bytes}))\n"
         "from reasoned_explorer.cli import main; sys.argv = ['rex', *sys.argv[1:]]; main()"
     )
+    return subprocess.run([sys.executable, "-c", script, *arguments], capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("most_bytes", [0, 1024])
+def test_a_disk_that_is_full_before_the_first_step_leaves_nothing(most_bytes: int, tmp_path: Path) -> None:
+    ended = _rex_with_files_up_to(most_bytes, "run", "Find me a bench", *FAST, "--out", "runs/run")
+    assert ended.returncode == 3, ended.stdout + ended.stderr
+    assert "ulimit -f" in ended.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
+@pytest.mark.parametrize("command", [["show", "run"], ["worlds", "inspect", "plaza:1@150"], ["names"]])
+def test_output_that_cannot_be_written_is_answered_in_words(command: list[str]) -> None:
+    if command[0] == "show":
+        _rex("run", "Find me a bench", *FAST, "--minds", "oracle", "--out", "run")
+    with Path("/dev/full").open("w") as full:
+        whole = [sys.executable, "-m", "reasoned_explorer", *command]
+        ended = subprocess.run(whole, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert ended.returncode == 3, ended.stderr
+    assert ended.stderr.startswith("rex: the output cannot be written: No space left on device")
+    assert len(ended.stderr.splitlines()) == 1
+
+
+def test_a_name_that_is_too_long_is_bad_input(tmp_path: Path) -> None:
+    long = "n" * 300
+    for more in (
+        ["--out", long],
+        ["--out", f"{long}/run"],
+        ["--world", f"{long}.osm"],
+        ["--world", f"{long}.rexworld"],
+    ):
+        code, shown = _rex("run", "Find me a bench", *FAST, *more)
+        assert code == 2, shown
+        assert "Traceback" not in shown
+    assert _rex("worlds", "draw", "plaza:1@150", f"{long}.png")[0] == 2
+    assert _rex("show", long)[0] == 2
+    assert list(tmp_path.iterdir()) == []
+
+
+FULL = {
+    "a map of a world": (3, ["worlds", "draw", "plaza:1@150", "plaza.png"]),
+    "a world": (3, ["worlds", "generate", "plaza:1@150", "--out", "plaza.rexworld"]),
+    "a place that is not there": (2, ["worlds", "generate", "plaza:1@150", "--out", "nowhere/plaza.rexworld"]),
+}
+
+
+@pytest.mark.parametrize("what", FULL)
+def test_a_full_disk_is_no_bad_input_whatever_is_written(what: str, tmp_path: Path) -> None:
+    code, arguments = FULL[what]
+    ended = _rex_with_files_up_to(2048, *arguments)
+    assert ended.returncode == code, ended.stdout + ended.stderr
+    assert ("ulimit -f" in ended.stderr) == (code == 3)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_disk_that_is_full_when_the_map_is_drawn_leaves_the_whole_record() -> None:
+    arguments = ["run", "Find me a bench", *FAST[:-1], "--minds", "oracle", "--max-steps", "3", "--out", "run"]
+    ended = _rex_with_files_up_to(150_000, *arguments)
+    assert ended.returncode == 3, ended.stdout + ended.stderr
+    assert "disk: run/map.png cannot be written" in ended.stderr
+    assert {path.name for path in Path("run").iterdir()} == {"record.jsonl", "world.rexworld"}
+    assert read_record(Path("run")).complete
+
+
+def test_a_full_disk_ends_a_mission_in_words() -> None:
     goal = ["run", "Find me a museum", "--world", "town:1@500", "--out", "run", "--no-map"]
-    ended = subprocess.run([sys.executable, "-c", script, *goal], capture_output=True, text=True, check=False)
+    ended = _rex_with_files_up_to(60_000, *goal)
     assert ended.returncode == 3, ended.stdout + ended.stderr
     assert "cannot be written" in ended.stderr
-    assert read_record(Path("run")).summary is None
+    assert Path("run/record.jsonl").read_bytes().endswith(b"}\n")
+    record = read_record(Path("run"))
+    assert record.steps
+    assert not record.complete
+    assert "File too large" in _rex("show", "run")[1]

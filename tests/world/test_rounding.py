@@ -10,6 +10,7 @@ from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.digest import world_digest
 from reasoned_explorer.world.files import load_world, save_world
 from reasoned_explorer.world.generator import DISTRICTS, generate_world
+from reasoned_explorer.world.opening import open_world
 from reasoned_explorer.world.osm.importer import import_osm
 from reasoned_explorer.world.rounding import rounded
 from reasoned_explorer.world.world import World
@@ -46,6 +47,10 @@ def test_whatever_world_comes_back_as_it_was_asked_about(world, tmp_path_factory
 @pytest.mark.parametrize("seed", [3, 5])
 def test_a_generated_world_comes_back_as_it_was(district, seed, tmp_path):
     assert_comes_back(generate_world(district, seed=seed, size_m=250.0), tmp_path)
+
+
+def test_a_world_with_labels_permuted_comes_back_as_it_was(tmp_path):
+    assert_comes_back(open_world("plaza:3@200~permuted:1"), tmp_path)
 
 
 def test_an_imported_world_comes_back_as_it_was(tmp_path):

@@ -17,6 +17,7 @@ from reasoned_explorer.evaluation.mission import Mission, MissionResult
 from reasoned_explorer.evaluation.mission_settings import MissionSettings, errors_of
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.model import Fault, Gathering, RecordError, SettingsError
+from reasoned_explorer.model.checks import is_there
 from reasoned_explorer.model.record import MissionEnd, StepRecord
 from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.planning.setting_pairs import parse_planner_settings
@@ -166,7 +167,7 @@ def _exit_code(result: MissionResult) -> ExitCode:
 def _folder(options: RunOptions) -> Path:
     """Return where the run is kept: as given, or the first free name under ``runs/``."""
     if options.out is not None:
-        if options.out.exists() and (not options.out.is_dir() or any(options.out.iterdir())):
+        if is_there(options.out) and (not options.out.is_dir() or any(options.out.iterdir())):
             fault = Fault(
                 f"{options.out} is there and not an empty folder", "a new or empty folder", "give another --out"
             )

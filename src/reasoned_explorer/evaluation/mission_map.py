@@ -53,7 +53,8 @@ def draw_mission(world: World, trace: MissionTrace, path: Path | str, *, width_p
 
     Raises:
         RecordError: If the trace has numbers that are not finite or states that are unknown, if the width is no good
-            or if the file cannot be written; with all the reasons.
+            or if the file cannot be written there; with all the reasons.
+        PartError: If the disk fails, e.g. because it is full.
     """
     target = Path(path)
     faults = [*check_target(target, width_px), *trace.faults()]

@@ -2,6 +2,8 @@
 
 from functools import cached_property
 
+from reasoned_explorer.model.checks import kind_faults
+from reasoned_explorer.model.errors import WorldError
 from reasoned_explorer.world.digest import world_digest
 from reasoned_explorer.world.geodesic import Geodesics
 from reasoned_explorer.world.index import ObjectIndex
@@ -16,9 +18,14 @@ class Atlas:
 
     Args:
         world: The world; it is never changed. A world that is finer than files keep it is asked about as they do.
+
+    Raises:
+        WorldError: If it is no world.
     """
 
     def __init__(self, world: World) -> None:
+        if faults := kind_faults("the world", world, World, "a World", "open_world makes one of a name or a file"):
+            raise WorldError("atlas", faults)
         self.world = rounded(world)
 
     @cached_property

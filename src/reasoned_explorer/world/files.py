@@ -19,7 +19,9 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 from pydantic_core import from_json, to_json
 
 from reasoned_explorer.geometry import GeoOrigin
-from reasoned_explorer.model import Fault, PartError, WorldError
+from reasoned_explorer.model import Fault, WorldError
+from reasoned_explorer.model.checks import kind_faults, path_of
+from reasoned_explorer.model.disk import disk_error
 from reasoned_explorer.world.rounding import rounded
 from reasoned_explorer.world.taxonomy import OBJECT_CLASSES, Ground
 from reasoned_explorer.world.validation import check_world, near_misses
@@ -104,7 +106,9 @@ def save_world(world: World, path: str | Path) -> None:
         WorldError: If the world has faults, the name has another ending, or the folder cannot be written to.
         PartError: If the disk fails, e.g. because it is full.
     """
-    target = Path(path)
+    target = path_of(path, "world file", WorldError)
+    if faults := kind_faults("the world", world, World, "a World"):
+        raise WorldError("world file", faults)
     if target.suffix != SUFFIX:
         raise WorldError("world file", [Fault(f"the name {target.name!r}", f"one that ends in {SUFFIX}")])
     world = rounded(world)
@@ -113,11 +117,8 @@ def save_world(world: World, path: str | Path) -> None:
     data = gzip.compress(to_json(document), compresslevel=6, mtime=0)
     try:
         _replace(target, data)
-    except (FileNotFoundError, NotADirectoryError, IsADirectoryError, PermissionError) as error:
-        what = f"{target} cannot be written: {error.strerror}"
-        raise WorldError("world file", [Fault(what, "a folder that exists and can be written to")]) from error
     except OSError as error:
-        raise PartError("disk", f"{target} could not be written: {error.strerror or error}") from error
+        raise disk_error("world file", target, error, kind=WorldError) from error
 
 
 def load_world(path: str | Path) -> World:
@@ -127,7 +128,7 @@ def load_world(path: str | Path) -> World:
         WorldError: If there is no such file, or it is broken, cut short, of another version, or holds a world with
             faults; with all faults that can be told.
     """
-    source = Path(path)
+    source = path_of(path, "world file", WorldError)
     subject = f"world file {source}"
     document = _document(source, subject)
     if not isinstance(document, dict) or document.get("format") != FORMAT:
@@ -162,7 +163,9 @@ def _document(source: Path, subject: str) -> Any:
     except (gzip.BadGzipFile, zlib.error) as error:
         raise WorldError(subject, [Fault(f"it is broken: {error}", f"a file that ends in {SUFFIX}")]) from error
     except OSError as error:
-        raise WorldError(subject, [Fault(f"it cannot be read: {error.strerror or error}")]) from error
+        raise WorldError(
+            subject, [Fault(f"it cannot be read: {error.strerror or error}", "the path of a world file")]
+        ) from error
     if len(data) > _MOST_BYTES:
         raise WorldError(subject, [Fault("it holds over 1 GB", "a world of at most 25 km²")])
     try:
@@ -172,7 +175,7 @@ def _document(source: Path, subject: str) -> Any:
 
 
 def _replace(target: Path, data: bytes) -> None:
-    handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
+    handle, name = tempfile.mkstemp(prefix=f".{target.name[:40]}.", dir=target.parent)
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(data)

@@ -12,7 +12,7 @@ import json
 import sqlite3
 import zlib
 from collections.abc import Iterable, Iterator
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import fields
 from hashlib import blake2b
 from pathlib import Path
@@ -23,7 +23,8 @@ from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
 from reasoned_explorer.evaluation.record_file import parse_record
 from reasoned_explorer.evaluation.row import MissionRow
 from reasoned_explorer.evaluation.scoring import MissionScore
-from reasoned_explorer.model import Fault, RecordError, RecordWriteError
+from reasoned_explorer.model import Fault, InputError, PartError, RecordError, RecordWriteError
+from reasoned_explorer.model.disk import disk_error, in_words
 from reasoned_explorer.model.record import EpisodeRecord
 
 STORE_NAME = "run.sqlite"
@@ -72,6 +73,7 @@ class RunStore:
 
         Raises:
             RecordError: If the folder holds a run, or cannot be written to.
+            PartError: If the disk fails, e.g. because it is full.
         """
         path = folder / STORE_NAME
         if path.exists():
@@ -93,8 +95,9 @@ class RunStore:
                 )
             half.replace(path)
         except (OSError, sqlite3.Error) as error:
-            fault = Fault(f"{path} cannot be written: {error}", "a folder that can be written to")
-            raise RecordError("run", [fault]) from error
+            with suppress(OSError):
+                half.unlink(missing_ok=True)
+            raise _write_error(path, error) from error
         return cls.open(folder)
 
     @classmethod
@@ -159,7 +162,7 @@ class RunStore:
                 half.replace(path)
             self._connection.execute("INSERT OR IGNORE INTO missions VALUES (?, ?, ?, ?, ?)", (*task.key, row, wall_s))
         except (OSError, sqlite3.Error) as error:
-            raise RecordWriteError(f"run: {self.folder} cannot be written: {error}") from error
+            raise RecordWriteError(f"run: {_in_words(self.folder, error)}") from error
 
     def rows(self, *, vehicle: str | None = None, method: str | None = None) -> Iterator[MissionRow]:
         """Return the rows, sorted by vehicle, method and mission id."""
@@ -215,6 +218,22 @@ class RunStore:
         if found is None:
             raise KeyError(name)
         return json.loads(found[0])
+
+
+def _write_error(path: Path, error: OSError | sqlite3.Error) -> InputError | PartError:
+    """Return the error to raise when a store cannot be made."""
+    if isinstance(error, OSError):
+        return disk_error("run", path, error, kind=RecordError)
+    # Extended codes have the plain one in their last byte.
+    if error.sqlite_errorcode & 0xFF in {sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR}:
+        return PartError("disk", _in_words(path, error))
+    return RecordError("run", [Fault(f"{path} cannot be written: {error}", "a folder that can be written to")])
+
+
+def _in_words(path: Path, error: OSError | sqlite3.Error) -> str:
+    if isinstance(error, OSError):
+        return in_words(path, error)
+    return f"{path} cannot be written: {error}; make room on that disk, or write to another one"
 
 
 def _plain(name: str) -> str:

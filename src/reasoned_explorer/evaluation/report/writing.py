@@ -18,7 +18,8 @@ from reasoned_explorer.evaluation.report.results import paper_tables
 from reasoned_explorer.evaluation.report.study import Study
 from reasoned_explorer.evaluation.report.tables import Table, Value
 from reasoned_explorer.evaluation.row import MissionRow
-from reasoned_explorer.model import Fault, RecordError, RecordWriteError
+from reasoned_explorer.model import Fault, RecordError
+from reasoned_explorer.model.disk import disk_error
 
 PAGE_NAME = "index.html"
 
@@ -42,8 +43,8 @@ def write_report(
 
     Raises:
         InputError: If the rows cannot be a report: none, a mission twice, two T_max in one method, an unknown end.
-        RecordError: If the folder is there and is none of a report, or cannot be made.
-        RecordWriteError: If the disk is full; what was there stays.
+        RecordError: If the folder is none of a report or cannot be written; what was there stays.
+        PartError: If the disk fails, e.g. because it is full; likewise.
     """
     study = Study(rows, about)
     _check_target(folder)
@@ -59,7 +60,7 @@ def write_report(
     try:
         _replace_folder(folder, contents)
     except OSError as error:
-        raise RecordWriteError(f"report: {folder} cannot be written: {error.strerror or error}") from error
+        raise disk_error("report", folder, error, kind=RecordError) from error
     return folder / PAGE_NAME
 
 

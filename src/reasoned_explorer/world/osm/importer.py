@@ -11,6 +11,7 @@ import shapely
 
 from reasoned_explorer.geometry import GeoOrigin
 from reasoned_explorer.model import Fault, Gathering, WorldError
+from reasoned_explorer.model.checks import kind_faults, path_of, seed_faults
 from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.world.osm.buildings import buildings_of
 from reasoned_explorer.world.osm.features import features_of
@@ -73,7 +74,10 @@ def import_osm_with_report(
     path: str | PathLike[str], *, bbox: BoxDeg | None = None, seed: int = 0, name: str | None = None
 ) -> tuple[World, ImportReport]:
     """Import a world as `import_osm` does, and say what was made of the file and what was lost."""
-    file = Path(path)
+    file = path_of(path, "OpenStreetMap file", WorldError)
+    faults = seed_faults(seed) + kind_faults("name", name, (str, type(None)), "text, or None")
+    if faults:
+        raise WorldError("import", faults)
     bbox = check_source(file, bbox=bbox)
     extract = read_extract(file, box_deg=bbox)
     stop_if_asked()
