@@ -34,7 +34,7 @@ from reasoned_explorer.model import (
     TrackPoint,
     WorldError,
 )
-from reasoned_explorer.model.checks import kind_faults, number_faults, path_of
+from reasoned_explorer.model.checks import kind_faults, path_of
 from reasoned_explorer.model.record import EpisodeRecord, MissionEnd, MissionHeader, MissionSummary, StepRecord
 from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.perception.context import CaptionerContext
@@ -368,8 +368,6 @@ def _check_arguments(world: object, settings: object, start: object) -> None:
         SettingsError: kind_faults("settings", settings, (MissionSettings, type(None)), "MissionSettings, or None"),
         StartError: kind_faults("start", start, (Pose, type(None)), "a Pose, or None for a random one"),
     }
-    if isinstance(start, Pose):
-        found[StartError] += number_faults((f"start.{name}", value) for name, value in asdict(start).items())
     kinds = [kind for kind, faults in found.items() if faults]
     if kinds:
         kind = kinds[0] if len(kinds) == 1 else InputError
