@@ -73,6 +73,7 @@ class BenchOptions:
     ray: str | None = None
     out: Path | None = None
     resume: Path | None = None
+    add: str = ""
     traces: bool = True
     quiet: bool = False
 
@@ -116,7 +117,11 @@ def run_from_options(options: BenchOptions, *, names: Sequence[str] | None = Non
     if options.resume is not None:
         who = options.who
         folder, store = options.resume, RunStore.open(options.resume)
+        if options.add:
+            store.extend([item.name for item in methods(parse_planners(options.add))])
     else:
+        if options.add:
+            raise SettingsError("--add", [Fault(f"{options.add} without --resume", "a run to add to", "--resume RUN")])
         plan = _plan(options, names or parse_planners(options.planners))
         who = options.who
         folder = options.out or _free_folder(plan)

@@ -92,6 +92,7 @@ def bench(
     resume: Annotated[
         Path | None, typer.Option(metavar="RUN", help="Go on with a run that was stopped; it knows its own settings.")
     ] = None,
+    add: Annotated[str, typer.Option(help="With --resume: run these planners on its missions, too.")] = "",
     traces: Annotated[bool, typer.Option("--traces/--no-traces", help="Keep the record of each mission.")] = True,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the tables.")] = False,
 ) -> None:
@@ -127,6 +128,7 @@ def bench(
             ray=ray,
             out=out,
             resume=resume,
+            add=add,
             traces=traces,
             quiet=quiet,
         )

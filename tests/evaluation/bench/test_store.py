@@ -8,7 +8,7 @@ from reasoned_explorer.evaluation.bench.plan import BenchPlan
 from reasoned_explorer.evaluation.bench.runner import Workers, run_bench
 from reasoned_explorer.evaluation.bench.store import STORE_NAME, RunStore
 from reasoned_explorer.evaluation.bench.worker import run_task
-from reasoned_explorer.model import RecordError
+from reasoned_explorer.model import InputError, RecordError
 from reasoned_explorer.model.record import MissionEnd
 
 
@@ -108,3 +108,17 @@ def test_a_part_that_fails_is_a_row_and_no_exception(small_plan: BenchPlan) -> N
     assert done.failed
     assert f'"end": "{MissionEnd.FAULT.value}"' in done.row
     assert "gone.osm.pbf" in done.row
+
+
+def test_more_planners_can_be_run_on_the_missions_of_a_run(store: RunStore) -> None:
+    run_bench(store, Workers())
+    before = [row.as_json() for row in store.rows()]
+    store.extend(["nearest-frontier", "random"])
+    assert store.plan.methods == ("nearest-frontier", "llm-as-eval", "random")
+    run_bench(store, Workers())
+    after = list(store.rows())
+    assert [row.as_json() for row in after if row.method != "random"] == before
+    assert sum(row.method == "random" for row in after) == 6
+    with pytest.raises(InputError, match="did you mean random"):
+        store.extend(["randon"])
+    assert store.plan.methods[-1] == "random"
