@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import TypeVar
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
@@ -40,8 +39,6 @@ from reasoned_explorer.model import Fault, Gathering, InputError, SettingsError
 from reasoned_explorer.task.split import Place, Split
 from reasoned_explorer.task.splitting import Dealing, ceiling_casr, generated_places, places_of_worlds
 from reasoned_explorer.vehicles.registry import vehicle_profile
-
-T = TypeVar("T")
 
 #: What a split of worlds that a person names is dealt from, unless another seed is given.
 OWN_SPLIT_SEED = 1

@@ -51,7 +51,7 @@ def notes_of(rows: Iterable[MissionRow], *, total: int) -> Notes:
     if failed:
         once.append(f"{failed:,} missions ended with a fault of a part; they count as failures.")
     if any("simulated" in row.captioner for row in rows):
-        once.append("Captions are a simulated captioner’s; the error rates of `noisy` are assumed.")
+        once.append("Captions are a simulated captioner’s; the error rates of “noisy” are assumed.")
     if any(row.ct_label.startswith("modelled") for row in rows):
         once.append("CT is modelled: each call is charged what a latency profile says, not what it took.")
     if any(is_bound(name) for name in {row.method for row in rows}):

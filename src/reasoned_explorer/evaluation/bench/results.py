@@ -129,13 +129,18 @@ def p_of(table: MetricTable, name: str) -> float:
 
 def label_of(rows: Sequence[MissionRow]) -> str:
     """Return what a method is called in a table: its name, whose minds, and how its thinking time came about."""
+    what = what_of(rows)
+    return f"{rows[0].method} [{what[0]}]{what[1]}" if what[0] else f"{rows[0].method}{what[1]}"
+
+
+def what_of(rows: Sequence[MissionRow]) -> tuple[str, str]:
+    """Return of a method whose minds it has, or that it is a bound, and how its thinking time came about."""
     # A mission that could not be run knows nothing of the kind.
     row = next((row for row in rows if row.ct_label), rows[0])
-    _, bracket, minds = row.planner.partition("[")
-    notes = [minds.rstrip("]")] if bracket and row.method not in BOUND_METHODS else []
+    _, _, minds = row.planner.partition("[")
+    notes = [minds.rstrip("]")] if minds and row.method not in BOUND_METHODS else []
     if row.method in BOUND_METHODS:
         notes.append("a bound: knows the world")
     elif row.method.endswith(f"+{PERFECT_HALT}"):
         notes.append("the judge halts, a bound")
-    who = f" [{'; '.join(notes)}]" if notes else ""
-    return f"{row.method}{who}" + (f", CT {row.ct_label}" if row.ct_label else "")
+    return "; ".join(notes), f", CT {row.ct_label}" if row.ct_label else ""

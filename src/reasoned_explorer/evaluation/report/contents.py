@@ -30,6 +30,7 @@ from reasoned_explorer.evaluation.report.results import (
     headroom_table,
     levels_table,
     overall_table,
+    spent_table,
 )
 from reasoned_explorer.evaluation.report.study import Study
 from reasoned_explorer.evaluation.report.trajectories import pair_of, pictures
@@ -41,7 +42,7 @@ def sections_of(study: Study, looks: dict[str, Look], traces: TraceSource | None
         Section(
             "results",
             "Results",
-            tables=(overall_table(study), levels_table(study)),
+            tables=(overall_table(study), spent_table(study), levels_table(study)),
             folded=(every_level_table(study),),
         ),
         _differences(study, looks),

@@ -95,6 +95,7 @@ def _draw_differences(study: Study, looks: Looks, name: str, axes: Axes) -> None
     axes.tick_params(axis="y", length=0)
     axes.grid(visible=False, axis="y")
     axes.grid(visible=True, axis="x", color=INKS["rule"][0], linewidth=0.5)
+    axes.xaxis.set_major_formatter(lambda value, _: _tick(value))
     axes.margins(x=0.08)
 
 
@@ -207,7 +208,12 @@ def _draw_ct_casr(study: Study, looks: Looks, level: int | None, axes: Axes) -> 
 def _write_shares(axes: Axes, top: float) -> None:
     """Write the ticks of a vertical axis without leading zeros."""
     ticks = [tick for tick in axes.get_yticks() if 0.0 <= tick <= top + 1e-9]
-    axes.set_yticks(ticks, [f"{tick:.3f}".rstrip("0").rstrip(".").removeprefix("0") or "0" for tick in ticks])
+    axes.set_yticks(ticks, [_tick(tick) for tick in ticks])
+
+
+def _tick(value: float) -> str:
+    text = share(value, 3).rstrip("0").rstrip(".")
+    return text if text.lstrip("−") else "0"
 
 
 def _draw_legend(methods: Sequence[str], looks: Looks, axes: Axes) -> None:

@@ -111,17 +111,19 @@ class CauseLook:
     hatch: str = ""
 
 
+# Letters on colours that are the same on light ground and on dark: not the ink, which turns pale on dark ground.
+_DARK = "#1f242b"
 #: False halts are brown, time over is purple (ColorBrewer's PuOr, safe for the colour-blind); having been there is pale
 #: and hatched.
 CAUSE_LOOKS: dict[Cause, CauseLook] = {
     Cause.FOUND: CauseLook("#00785a", "#ffffff"),
-    Cause.FALSE_HALT_BEEN: CauseLook("#f1a340", "#22272e", "////"),
+    Cause.FALSE_HALT_BEEN: CauseLook("#f1a340", _DARK, "////"),
     Cause.FALSE_HALT_NEVER: CauseLook("#b35806", "#ffffff"),
-    Cause.SHUNNED_GROUND: CauseLook("#e7d4a0", "#22272e", "...."),
-    Cause.TIME_OVER_BEEN: CauseLook("#b2abd2", "#22272e", "////"),
+    Cause.SHUNNED_GROUND: CauseLook("#e7d4a0", _DARK, "...."),
+    Cause.TIME_OVER_BEEN: CauseLook("#b2abd2", _DARK, "////"),
     Cause.TIME_OVER_NEVER: CauseLook("#542788", "#ffffff"),
     Cause.BUDGET: CauseLook("#5b6068", "#ffffff"),
-    Cause.NOTHING_LEFT: CauseLook("#9aa0a6", "#22272e", "\\\\\\\\"),
+    Cause.NOTHING_LEFT: CauseLook("#9aa0a6", _DARK, "\\\\\\\\"),
     Cause.FAULT: CauseLook("#3b3f46", "#ffffff", "xxxx"),
-    Cause.INTERRUPTED: CauseLook("#d0d3d6", "#22272e"),
+    Cause.INTERRUPTED: CauseLook("#d0d3d6", _DARK),
 }

@@ -9,8 +9,8 @@ from reasoned_explorer.evaluation.bench.results import (
     DIFFERENCES,
     HEADROOM,
     corrected,
-    label_of,
     p_of,
+    what_of,
 )
 from reasoned_explorer.evaluation.bench.tables import DIFFERENCES_NOTE
 from reasoned_explorer.evaluation.metrics import Metric, mean_of
@@ -31,8 +31,8 @@ from reasoned_explorer.evaluation.wording import NONE, amount, level_name, money
 #: With more cities than this their table is left out of the page.
 MOST_CITIES = 8
 
-_SHARES = ("SR", "OSR", "OSR-seen", "SPL", "soft-SPL", "CASR", "CASR per mission", "CASR paper-style", "nDTW")
-_AMOUNTS = {"distance to goal": "to goal m", "path length": "path m", "CT": "CT s", "TT": "TT s"}
+_SHARES = ("SR", "OSR", "OSR-seen", "SPL", "soft-SPL", "CASR", "CASR per mission", "CASR paper-style")
+_AMOUNTS = {"nDTW": "nDTW", "distance to goal": "to goal m", "path length": "path m", "CT": "CT s", "TT": "TT s"}
 _OUTCOME = {"SR": "success", "OSR": "oracle", "OSR-seen": "seen"}
 
 _COSTS: tuple[tuple[str, Callable[[Entry], float]], ...] = (
@@ -53,19 +53,38 @@ def _mean(study: Study, entries: Sequence[Entry], name: str, value: Callable[[En
 
 
 def overall_table(study: Study) -> Table:
-    """Return the main table: every metric of every method over all levels."""
-    lines = tuple(
-        replace(_full_line(study, method, None), label=label_of([entry.row for entry in study.of(method)]))
-        for method in study.methods
-    )
+    """Return the main table: what every method scored over all levels; its file has every metric."""
+    lines = []
+    for method in study.methods:
+        label = "".join(what_of([entry.row for entry in study.of(method)]))
+        cells = (_count(study, method, None), *(_metric(study, method, None, name, share) for name in _SHARES))
+        lines.append(Line(method, cells, method, label))
     return Table(
         key="main",
-        caption="What each method scored, all levels together: means a mission with 95 % intervals",
-        columns=_FULL_COLUMNS,
-        groups=(Group("", lines),),
-        note=_FULL_NOTE,
+        caption="What each method scored, all levels together, with 95 % intervals",
+        columns=("method", "missions", *_SHARES),
+        groups=(Group("", tuple(lines)),),
+        note=_SHARES_NOTE,
         head=("method", "level", *METRIC_HEAD),
         records=_full_records(study, [None]),
+    )
+
+
+def spent_table(study: Study) -> Table:
+    """Return how far every method went and what it spent over all levels."""
+    lines = []
+    for method in study.methods:
+        cells = (*_amounts(study, method, None), *_costs(study, method, None))
+        lines.append(Line(method, cells, method))
+    shown = {*_AMOUNTS, *(name for name, _ in _COSTS)}
+    return Table(
+        key="spent",
+        caption="How far each method went and what it spent, all levels together: means a mission with 95 % intervals",
+        columns=("method", *_SPENT),
+        groups=(Group("", tuple(lines)),),
+        note=_AMOUNTS_NOTE,
+        head=("method", "level", *METRIC_HEAD),
+        records=tuple(record for record in _full_records(study, [None]) if record[2] in shown),
     )
 
 
@@ -106,7 +125,7 @@ def every_level_table(study: Study) -> Table:
         caption="Every metric at each level",
         columns=_FULL_COLUMNS,
         groups=groups,
-        note=_FULL_NOTE,
+        note=f"{_SHARES_NOTE} {_AMOUNTS_NOTE}",
         head=("method", "level", *METRIC_HEAD),
         records=_full_records(study, list(study.levels)),
     )
@@ -286,13 +305,17 @@ def paper_tables() -> tuple[Table, ...]:
     )
 
 
-_FULL_COLUMNS = ("method", "missions", *_SHARES, *_AMOUNTS.values(), *(name for name, _ in _COSTS))
-_FULL_NOTE = (
+_SPENT = (*_AMOUNTS.values(), *(name for name, _ in _COSTS))
+_FULL_COLUMNS = ("method", "missions", *_SHARES, *_SPENT)
+_SHARES_NOTE = (
     "SR: declared in place and in time. OSR: at some moment declaring would have been right; seen: and what it takes "
-    "was looked at. soft-SPL: how far the way to the goal was covered, declared or not. CASR: the paper’s "
-    "SR · mean(1 − (CT + TT)/T_max); “per mission” is mean(S · (1 − (CT + TT)/T_max)), which a fast false halt cannot "
-    "raise; “paper-style” counts the planner’s CT only. nDTW: how near the way was to the reference way, of level-3 "
-    "missions only. To goal: straight, at the end. Each number leads to its missions."
+    "was looked at (the oracle looks at nothing). soft-SPL: how far the way to the goal was covered, declared or not. "
+    "CASR: the paper’s SR · mean(1 − (CT + TT)/T_max); “per mission” is mean(S · (1 − (CT + TT)/T_max)), which a fast "
+    "false halt cannot raise; “paper-style” counts the planner’s CT only. Each number leads to its missions."
+)
+_AMOUNTS_NOTE = (
+    "nDTW: how near the way was to the reference way, of level-3 missions only. To goal: straight, at the end. CT: "
+    "thinking; TT: travelling."
 )
 
 
@@ -312,17 +335,33 @@ def _narrow(cell: Cell) -> Cell:
     return replace(cell, interval=cell.interval.strip("[]").replace(", ", "–"))
 
 
-def _full_line(study: Study, method: str, level: int | None) -> Line:
-    entries = study.of(method, level=level)
-    if not entries:
-        return Line(method, tuple(Cell(NONE) for _ in _FULL_COLUMNS[1:]), method)
+def _count(study: Study, method: str, level: int | None) -> Cell:
     href, about = _target(method, level, "missions")
-    cells = [Cell(f"{len(entries)}", "", href, about)]
-    cells += [_metric(study, method, level, name, share) for name in _SHARES]
-    cells += [_metric(study, method, level, name, amount) for name in _AMOUNTS]
-    for name, metric in costs_of(study, entries).items():
-        cells.append(metric_cell(metric, money if name == "USD" else amount, href=href, about=about))
-    return Line(method, tuple(cells), method)
+    return Cell(f"{len(study.of(method, level=level))}", "", href, about)
+
+
+def _amounts(study: Study, method: str, level: int | None) -> list[Cell]:
+    return [
+        _metric(study, method, level, name, share if name == "nDTW" else amount)  # a share of 1, the others have units
+        for name in _AMOUNTS
+    ]
+
+
+def _costs(study: Study, method: str, level: int | None) -> list[Cell]:
+    href, about = _target(method, level, "missions")
+    costs = costs_of(study, study.of(method, level=level))
+    return [
+        metric_cell(metric, money if name == "USD" else amount, href=href, about=about)
+        for name, metric in costs.items()
+    ]
+
+
+def _full_line(study: Study, method: str, level: int | None) -> Line:
+    if not study.of(method, level=level):
+        return Line(method, tuple(Cell(NONE) for _ in _FULL_COLUMNS[1:]), method)
+    shares = [_metric(study, method, level, name, share) for name in _SHARES]
+    cells = (_count(study, method, level), *shares, *_amounts(study, method, level), *_costs(study, method, level))
+    return Line(method, cells, method)
 
 
 def _full_records(study: Study, levels: Sequence[int | None]) -> tuple[tuple[str | int | float | None, ...], ...]:
