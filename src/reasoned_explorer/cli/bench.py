@@ -113,17 +113,18 @@ def run_from_options(options: BenchOptions, *, names: Sequence[str] | None = Non
         require_ray()
     if options.resume is not None:
         who = options.who
+        more = [item.name for item in methods(parse_planners(options.add))] if options.add else []
         folder, store = options.resume, RunStore.open(options.resume)
-        if options.add:
-            store.extend([item.name for item in methods(parse_planners(options.add))])
     else:
         if options.add:
             raise SettingsError("--add", [Fault(f"{options.add} without --resume", "a run to add to", "--resume RUN")])
         plan = _plan(options, names or parse_planners(options.planners))
-        who = options.who
+        who, more = options.who, []
         folder = options.out or _free_folder(plan)
         store = RunStore.create(folder, plan, _about())
     with store:
+        if more:
+            store.extend(more)
         if not options.quiet:
             for line in about_split(store.plan.split, store.plan.vehicles):
                 console.print(line, markup=False, soft_wrap=True)

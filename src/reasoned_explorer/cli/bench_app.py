@@ -32,10 +32,14 @@ def _refuse_beside_resume(context: typer.Context) -> None:
     if context.params["resume"] is None:
         return
     given = [
-        Fault(f"{param.opts[0]} beside --resume", "--workers, --ray and --quiet only", "a run knows its own settings")
+        Fault(
+            f"{param.opts[0]} beside --resume",
+            "--add, --workers, --ray and --quiet only",
+            "a run knows its own settings",
+        )
         for param in context.command.params
         if param.name is not None
-        and param.name not in {"resume", "workers", "ray", "quiet"}
+        and param.name not in {"resume", "add", "workers", "ray", "quiet"}
         and getattr(context.get_parameter_source(param.name), "name", "") == "COMMANDLINE"
     ]
     if given:
