@@ -14,9 +14,11 @@ from reasoned_explorer.evaluation.report.results import (
     cities_table,
     collisions_table,
     differences_table,
+    headroom_table,
     levels_table,
     overall_table,
     paper_tables,
+    spent_table,
 )
 from reasoned_explorer.evaluation.report.study import Study
 from reasoned_explorer.evaluation.wording import amount, money, share, signed
@@ -65,6 +67,38 @@ def test_methods_with_other_missions_are_compared_on_those_that_both_have() -> N
     assert table.groups[0].lines[0].cells[0].text == "12"
     strangers = [*many_rows(3, ("llm-rrt",)), *many_rows(9, ("llm-as-eval",))[5:]]
     assert differences_table(Study(strangers, ABOUT)) is None
+
+
+def test_p_is_corrected_for_the_lines_and_headroom_is_told_where_it_is() -> None:
+    names = ("llm-rrt", "llm-as-eval", "follow-paths", "foresight-60m")
+    told = Study(many_rows(24, names), replace(ABOUT, methods=names, bounds=("foresight-60m",)))
+    table = differences_table(told)
+    assert table is not None
+    assert table.columns[-2:] == ("p (SR)", "p, corrected")
+    for line in table.groups[0].lines:
+        p, corrected = (float(cell.text) for cell in line.cells[-2:])
+        assert p <= corrected <= 1.0
+    headroom = headroom_table(told)
+    assert headroom is not None
+    assert [line.name for line in headroom.groups[0].lines] == ["llm-rrt", "llm-as-eval"]
+    assert headroom_table(Study(many_rows(4, ("llm-rrt", "follow-paths")), ABOUT)) is None
+
+
+def test_intervals_say_how_they_were_made(study: Study) -> None:
+    assert "clustered by place" in study.interval_method
+    assert "3 places" in study.interval_method
+    record = next(record for record in overall_table(study).records if record[2] == "calls")
+    assert record[-1] == "clustered bootstrap"
+    alone = Study([replace(row, place="park:3") for row in many_rows(8, ("llm-rrt",))], ABOUT)
+    assert "Wilson" in alone.interval_method
+    assert overall_table(alone).records[0][-1] == "Wilson"
+
+
+def test_a_figure_that_no_mission_has_is_a_dash_and_stands_in_no_file(study: Study) -> None:
+    table = spent_table(study)
+    assert table.columns[1] == "nDTW"
+    assert [line.cells[0].text for line in table.groups[0].lines] == ["–"] * len(METHODS)
+    assert not any(record[2] == "nDTW" for record in table.records)
 
 
 def test_causes_add_up_to_the_missions(study: Study) -> None:

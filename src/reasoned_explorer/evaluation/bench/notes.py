@@ -49,7 +49,9 @@ def notes_of(rows: Iterable[MissionRow], *, total: int) -> Notes:
         )
     failed = sum(row.end == MissionEnd.FAULT.value for row in rows)
     if failed:
-        once.append(f"{failed:,} missions ended with a fault of a part; they count as failures.")
+        once.append(
+            f"{failed:,} {'mission' if failed == 1 else 'missions'} ended with a fault of a part: failures, too."
+        )
     if any("simulated" in row.captioner for row in rows):
         once.append("Captions are a simulated captioner’s; the error rates of “noisy” are assumed.")
     if any(row.ct_label.startswith("modelled") for row in rows):
