@@ -129,12 +129,8 @@ def kills(scratch: Path, count: int) -> None:
         finished = len(store.finished())
     start(killed, 2).wait()
     same = rows_hash(alone) == rows_hash(killed)
-    print(
-        f"kills: {plan.count} missions, {whole_s:.0f} s when left alone; {count if not ended else 'fewer'} kills, then"
-    )
-    print(
-        f"  {finished} finished, then run to the end: rows {'identical' if same else 'DIFFERENT'} ({rows_hash(killed)})"
-    )
+    print(f"kills: {plan.count} missions, {whole_s:.0f} s when left alone; killed {killed_times} times, then")
+    print(f"  {finished} finished, run to the end: rows {'identical' if same else 'DIFFERENT'} ({rows_hash(killed)})")
 
 
 def main() -> None:

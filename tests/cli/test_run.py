@@ -122,6 +122,23 @@ def test_a_broken_world_file_is_answered_in_words(content: bytes, suffix: str, t
     assert [item.name for item in tmp_path.iterdir()] == [path.name]
 
 
+def test_everything_that_is_wrong_is_told_at_once_and_before_a_world_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    def expensive(*_: object, **__: object) -> None:
+        raise AssertionError("a world was made")
+
+    monkeypatch.setattr("reasoned_explorer.cli.run.open_world", expensive)
+    people = ["--planner", "llm-rtt", "--minds", "embeded", "--evaluator", "gpt", "--captioner", "nosy", "--vehicle"]
+    numbers = ["--views", "0", "--t-max", "nan", "--radius", "0", "--seed", "-1", "--start", "1,x", "--bbox", "1,2"]
+    code, shown = _rex("run", "", "--world", "prak:7", *people, "dron", "--latency", "x", "--clock", "y", *numbers)
+    assert code == 2
+    for word in ("the sentence is empty", "prak", "llm-rtt", "embeded", "'gpt'", "nosy", "dron", "latency", "clock",
+                 "views is 0", "t_max is", "success_radius_m is 0", "seed is -1", "'x'", "2 values"):  # fmt: skip
+        assert word in shown
+    code, shown = _rex("run", "Find me a bench", "--set", "depth=-1", "--set", "width", "--world", "nowhere.osm")
+    for word in ("depth is -1", "width", "nowhere.osm"):
+        assert word in shown
+
+
 def test_near_misses_are_named() -> None:
     assert "did you mean llm-rrt" in _rex("run", "Find me a bench", "--planner", "llm-rtt")[1]
     assert "park" in _rex("run", "Find me a bench", "--world", "prak:7")[1]

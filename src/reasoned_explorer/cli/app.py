@@ -50,7 +50,7 @@ def run(
         str | None,
         typer.Option(help="lat,lon,heading in degrees in a real place; x,y,heading in metres and degrees elsewhere."),
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Everything that is drawn is keyed by it.")] = 0,
+    seed: Annotated[int, typer.Option(help="Everything that is drawn is keyed by it.")] = 0,
     planner: Annotated[str, typer.Option(help="See rex names.")] = "llm-rrt",
     set_: Annotated[
         list[str] | None, typer.Option("--set", help="A setting of the planner, e.g. depth=1; may be repeated.")

@@ -1,23 +1,22 @@
 """One mission from a sentence to its score: puts the rooms together, runs the agent, has the judge look at it."""
 
 import gc
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from reasoned_explorer.clock import Clock, MixedClock, RealClock, VirtualClock
 from reasoned_explorer.evaluation.guide import GUIDE_LABEL, Guide
+from reasoned_explorer.evaluation.mission_settings import CLOCKS, errors_of, with_overrides
+from reasoned_explorer.evaluation.mission_settings import MissionSettings as MissionSettings  # noqa: PLC0414 - is had from here, too
 from reasoned_explorer.evaluation.record_file import RecordWriter
 from reasoned_explorer.evaluation.scoring import Look, MissionScore, outcome_of, score
 from reasoned_explorer.evaluation.truth import OracleTruth
 from reasoned_explorer.exploration.explorer import Exploration, Explorer, Parts
-from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.minds.context import MindContext
 from reasoned_explorer.minds.latency import latency_profile
@@ -25,6 +24,7 @@ from reasoned_explorer.minds.ledger import CallRecord, Ledger
 from reasoned_explorer.minds.registry import make_minds
 from reasoned_explorer.model import (
     Fault,
+    Gathering,
     InputError,
     LegOutcome,
     RecordError,
@@ -32,19 +32,18 @@ from reasoned_explorer.model import (
     SettingsError,
     StartError,
     TrackPoint,
-    UnknownNameError,
     WorldError,
 )
-from reasoned_explorer.model.checks import is_within, kind_faults, number_faults, path_of, seed_faults
+from reasoned_explorer.model.checks import kind_faults, path_of
 from reasoned_explorer.model.record import EpisodeRecord, MissionEnd, MissionHeader, MissionSummary, StepRecord
 from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.perception.context import CaptionerContext
 from reasoned_explorer.perception.registry import CAPTIONERS
-from reasoned_explorer.planning import Planner
 from reasoned_explorer.planning.registry import make_planner
 from reasoned_explorer.simulation.eyes import Eyes
-from reasoned_explorer.simulation.vehicle import SimulatedVehicle, check_start
-from reasoned_explorer.task.judge import RADIUS_RANGE_M, Judge, TrackReport
+from reasoned_explorer.simulation.vehicle import SimulatedVehicle, check_on_map, check_start
+from reasoned_explorer.task.goal_spec import GoalSpec
+from reasoned_explorer.task.judge import Judge, TrackReport
 from reasoned_explorer.task.reading import read_goal
 from reasoned_explorer.task.sampling import SamplingSettings, sample_start
 from reasoned_explorer.vehicles import VehicleProfile
@@ -53,69 +52,8 @@ from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.geodesic import Traveller
 from reasoned_explorer.world.world import World
 
-CLOCKS: Mapping[str, Callable[[], Clock]] = {"virtual": VirtualClock, "mixed": MixedClock, "real": RealClock}
-#: Who carries a mission out: the method's agent, or the bound that knows the shortest compliant way.
-AGENTS = ("explorer", "guide")
 #: A seeded random start is at least and at most this far, on the shortest compliant way, from being successful.
 START_RANGE_M = (60.0, 400.0)
-
-
-@dataclass(frozen=True, slots=True)
-class MissionSettings:
-    """Who does what in a mission, by name, and how.
-
-    Attributes:
-        planner: A registered planner.
-        planner_settings: Of that planner.
-        minds: Registered minds; they fill every role that has no name of its own.
-        visionary: Who imagines.
-        evaluator: Who scores.
-        checker: Who notices the goal.
-        captioner: A registered captioner.
-        vehicle: A registered vehicle profile.
-        latency: A latency profile: how long modelled calls take.
-        clock: ``virtual``, ``mixed`` or ``real``.
-        explorer: How the agent explores.
-        success_radius_m: R of the judge, metres.
-        seed: Of the mission: everything that is drawn is keyed by it.
-        agent: One of `AGENTS`; the guide asks no planner, mind or captioner.
-
-    A planner may bring settings of the agent with it (`planning.Planner`); a mission's own ``settings`` are those that
-    are in force.
-
-    Raises:
-        SettingsError: If a value is of another kind than it should be, NaN, or out of range; with all faults. Whether a
-            name is registered is the mission's to say.
-    """
-
-    planner: str = "llm-rrt"
-    planner_settings: Mapping[str, Any] = field(default_factory=dict)
-    minds: str = "embedded"
-    visionary: str | None = None
-    evaluator: str | None = None
-    checker: str | None = None
-    captioner: str = "noisy"
-    vehicle: str = "drone"
-    latency: str = "gpt-2023"
-    clock: str = "virtual"
-    explorer: ExplorerSettings = field(default_factory=ExplorerSettings)
-    success_radius_m: float = 15.0
-    seed: int = 0
-    agent: str = "explorer"
-
-    def __post_init__(self) -> None:
-        faults = seed_faults(self.seed)
-        low_m, high_m = RADIUS_RANGE_M
-        if not is_within(self.success_radius_m, low_m, high_m):
-            faults.append(Fault(f"success_radius_m is {self.success_radius_m!r}", f"metres in [{low_m:g}, {high_m:g}]"))
-        for name in ("planner", "minds", "captioner", "vehicle", "latency", "clock", "agent"):
-            faults += kind_faults(name, getattr(self, name), str, "a name")
-        for name in ("visionary", "evaluator", "checker"):
-            faults += kind_faults(name, getattr(self, name), (str, type(None)), "a name, or None")
-        faults += kind_faults("planner_settings", self.planner_settings, Mapping, "names and values")
-        faults += kind_faults("explorer", self.explorer, ExplorerSettings, "ExplorerSettings")
-        if faults:
-            raise SettingsError("mission settings", faults)
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,12 +97,12 @@ class Mission:
         judge: A judge of this goal, world, vehicle and success radius from an earlier mission, to share its work with.
 
     Raises:
-        GoalError: If the goal cannot be understood, or nothing in this world satisfies it.
+        GoalError: If the goal cannot be understood.
         StartError: If the start is none or no mission can begin at it, or no start can be found.
         WorldError: If the world is none.
         UnknownNameError: If a name is not registered.
         SettingsError: If settings are none or out of range.
-        InputError: If several of the arguments are of another kind than they should be; with all faults.
+        InputError: If several of these are wrong, with all that can be told without looking into the world.
     """
 
     def __init__(
@@ -177,21 +115,18 @@ class Mission:
         judge: Judge | None = None,
     ) -> None:
         _check_arguments(world, settings, start)
-        self.settings = settings or MissionSettings()
+        self.settings = settings if settings is not None else MissionSettings()
         self.atlas = world if isinstance(world, Atlas) else Atlas(world)
+        spec = _checked(goal, self.atlas.world, self.settings, start)
         self.profile = vehicle_profile(self.settings.vehicle)
         stop_if_asked()
-        self.judge = judge or judge_of(goal, self.atlas, self.settings.vehicle, self.settings.success_radius_m)
+        self.judge = judge or judge_of(spec, self.atlas, self.settings.vehicle, self.settings.success_radius_m)
         self.spec = self.judge.spec
         self.goal = self.spec.goal
         stop_if_asked()
         self.start = self._start(start, self.judge.traveller)
         stop_if_asked()
-        if self.settings.clock not in CLOCKS:
-            raise UnknownNameError("clock", self.settings.clock, tuple(CLOCKS))
         self.clock = CLOCKS[self.settings.clock]()
-        if self.settings.agent not in AGENTS:
-            raise UnknownNameError("agent", self.settings.agent, AGENTS)
         # Privileged minds and the guide alone may read the truth; they are the only ones that ask for it.
         truth = OracleTruth(self.atlas, self.judge, self.profile, self.settings.explorer)
         self.explorer: Explorer | Guide
@@ -301,7 +236,7 @@ class Mission:
         captioner = CAPTIONERS.load(settings.captioner)(CaptionerContext(self.clock, settings.seed, charge_captions))
         planner = make_planner(settings.planner, minds, settings.planner_settings)
         self._labels = (planner.label, minds.label, captioner.label)
-        explorer = _with_overrides(settings.explorer, planner)
+        explorer = with_overrides(settings.explorer, planner)
         self.settings = replace(settings, explorer=explorer)
         parts = Parts(self._vehicle(), captioner, planner, minds.checker, self.clock, ledger)
         return Explorer(parts, explorer)
@@ -433,26 +368,23 @@ def _check_arguments(world: object, settings: object, start: object) -> None:
         SettingsError: kind_faults("settings", settings, (MissionSettings, type(None)), "MissionSettings, or None"),
         StartError: kind_faults("start", start, (Pose, type(None)), "a Pose, or None for a random one"),
     }
-    if isinstance(start, Pose):
-        found[StartError] += number_faults((f"start.{name}", value) for name, value in asdict(start).items())
     kinds = [kind for kind, faults in found.items() if faults]
     if kinds:
         kind = kinds[0] if len(kinds) == 1 else InputError
         raise kind("mission", [fault for faults in found.values() for fault in faults])
 
 
-def _with_overrides(settings: ExplorerSettings, planner: Planner) -> ExplorerSettings:
-    """Return the agent's settings with those that belong to a planner.
-
-    Raises:
-        SettingsError: If the agent has no such settings, or their values are out of range.
-    """
-    overrides: Mapping[str, bool] = getattr(planner, "explorer", {})
-    known = {each.name for each in fields(settings)}
-    unknown = [Fault(f"no setting {key!r}", "a setting of the agent") for key in sorted(set(overrides) - known)]
-    if unknown:
-        raise SettingsError(f"agent settings of the planner {planner.name}", unknown)
-    return replace(settings, **overrides)
+def _checked(goal: str, world: World, settings: MissionSettings, start: Pose | None) -> GoalSpec:
+    """Return what the goal asks for, once all that is given has been checked that needs no look into the world."""
+    found = Gathering()
+    spec = found.take(lambda: read_goal(goal), None)
+    found.add(*errors_of(settings))
+    if start is not None:
+        found.check(lambda: check_on_map(world.bounds, start))
+    found.finish("mission")
+    if spec is None:  # its error was raised
+        raise AssertionError
+    return spec
 
 
 @cache
@@ -480,7 +412,7 @@ def traveller_of(profile: VehicleProfile) -> Traveller:
     return Traveller(flies=profile.flies, radius_m=profile.radius_m, collides=profile.collides)
 
 
-def judge_of(goal: str, atlas: Atlas, vehicle: str, success_radius_m: float) -> Judge:
+def judge_of(goal: str | GoalSpec, atlas: Atlas, vehicle: str, success_radius_m: float) -> Judge:
     """Return the judge of a goal in a world for a vehicle.
 
     Raises:
@@ -491,7 +423,7 @@ def judge_of(goal: str, atlas: Atlas, vehicle: str, success_radius_m: float) -> 
     profile = vehicle_profile(vehicle)
     return Judge(
         atlas,
-        read_goal(goal),
+        read_goal(goal) if isinstance(goal, str) else goal,
         traveller=traveller_of(profile),
         success_radius_m=success_radius_m,
         camera_height_m=profile.camera_height_m,

@@ -78,8 +78,11 @@ class TrackReport:
         return dict(self.end.at_radius)[radius_m] and self.compliance.compliant
 
 
-#: Least and greatest success radius, metres.
-RADIUS_RANGE_M = (1.0, 50.0)
+def faults_of_radius(success_radius_m: float) -> list[Fault]:
+    """Return what is wrong with a success radius, metres; none if it is in [1, 50]."""
+    if 1.0 <= success_radius_m <= 50.0:
+        return []
+    return [Fault(f"success_radius_m is {success_radius_m}", "metres in [1, 50]")]
 
 
 class Judge:
@@ -107,10 +110,7 @@ class Judge:
         camera_height_m: float = 1.0,
         grader: Grader | None = None,
     ) -> None:
-        faults = []
-        low_m, high_m = RADIUS_RANGE_M
-        if not low_m <= success_radius_m <= high_m:
-            faults.append(Fault(f"success_radius_m is {success_radius_m}", f"metres in [{low_m:g}, {high_m:g}]"))
+        faults = faults_of_radius(success_radius_m)
         if not 0.0 <= camera_height_m <= 100.0:
             faults.append(Fault(f"camera_height_m is {camera_height_m}", "metres in [0, 100]"))
         if faults:

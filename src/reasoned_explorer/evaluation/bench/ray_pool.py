@@ -1,6 +1,7 @@
 """Missions of a run on a Ray cluster: the same missions, the same rows, whichever machine runs which."""
 
 from collections.abc import Iterator, Sequence
+from importlib.util import find_spec
 from typing import Any
 
 from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
@@ -62,11 +63,25 @@ def run_on_ray(plan: BenchPlan, tasks: Sequence[Task], *, address: str, workers:
             ray.shutdown()
 
 
+def require_ray() -> None:
+    """Say whether Ray is there, without the seconds that loading it takes.
+
+    Raises:
+        MissingDependencyError: If Ray is not installed.
+    """
+    if find_spec("ray") is None:
+        raise _missing()
+
+
+def _missing() -> MissingDependencyError:
+    return MissingDependencyError("--ray", "ray", "pip install 'reasoned-explorer[ray]'")
+
+
 def _ray() -> Any:
     try:
         import ray
     except ImportError as error:
-        raise MissingDependencyError("--ray", "ray", "pip install 'reasoned-explorer[ray]'") from error
+        raise _missing() from error
     return ray
 
 

@@ -11,9 +11,9 @@ mission's key, its row as JSON, and the seconds that it took on this machine, wh
 import json
 import sqlite3
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing, suppress
-from dataclasses import fields
+from dataclasses import fields, replace
 from hashlib import blake2b
 from pathlib import Path
 from types import TracebackType
@@ -29,6 +29,8 @@ from reasoned_explorer.model.record import EpisodeRecord
 
 STORE_NAME = "run.sqlite"
 TRACES_NAME = "traces"
+#: What is wrong with a run of which nothing can be shown yet.
+NOTHING_FINISHED = Fault("no mission is finished", "at least one", "go on with rex bench --resume")
 _STORE_VERSION = 1
 _KEY = ("vehicle", "method", "mission_id")
 #: Columns of the view, from a row's JSON.
@@ -140,6 +142,21 @@ class RunStore:
         """What else is known of the run."""
         about: dict[str, Any] = self._fact("about")
         return about
+
+    def extend(self, methods: Sequence[str]) -> None:
+        """Have the run run more methods on its missions, after those that it has; what it has already is left alone.
+
+        Raises:
+            InputError: If a method cannot be run.
+            RecordWriteError: If the store cannot be written.
+        """
+        plan = self.plan
+        longer = replace(plan, methods=(*plan.methods, *(name for name in methods if name not in plan.methods)))
+        text = json.dumps(longer.as_dict(), sort_keys=True, ensure_ascii=False)
+        try:
+            self._connection.execute("UPDATE run SET value = ? WHERE name = 'plan'", (text,))
+        except sqlite3.Error as error:
+            raise RecordWriteError(f"run: {self.folder} cannot be written: {error}") from error
 
     def finished(self) -> set[tuple[str, str, str]]:
         """Return the keys of the missions that are finished: vehicle, method, mission id."""

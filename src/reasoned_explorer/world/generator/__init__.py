@@ -13,7 +13,7 @@ from reasoned_explorer.model.errors import Fault, SettingsError, UnknownNameErro
 if TYPE_CHECKING:
     from reasoned_explorer.world.world import World
 
-__all__ = ["DISTRICTS", "SIZE_RANGE_M", "generate_world"]
+__all__ = ["DISTRICTS", "SIZE_RANGE_M", "check_request", "generate_world"]
 
 #: What can be generated, with one line for people.
 DISTRICTS: Mapping[str, str] = MappingProxyType(
@@ -46,6 +46,20 @@ def generate_world(district: str, *, seed: int = 0, size_m: float = 400.0) -> "W
         UnknownNameError: If only the district is wrong; it names the near misses.
         SettingsError: If the seed or the size is wrong, with all faults at once.
     """
+    check_request(district, seed=seed, size_m=size_m)
+    from reasoned_explorer.knowledge.cooccurrence import load_cooccurrence
+    from reasoned_explorer.world.generator.generate import build_world
+
+    return build_world(district, seed=seed, size_m=float(size_m), statistics=load_cooccurrence())
+
+
+def check_request(district: str, *, seed: int, size_m: float) -> None:
+    """Check that `generate_world` could make a world; it is not made.
+
+    Raises:
+        UnknownNameError: As `generate_world`.
+        SettingsError: Likewise.
+    """
     faults: list[Fault] = []
     faults += seed_faults(seed)
     low, high = SIZE_RANGE_M
@@ -58,7 +72,3 @@ def generate_world(district: str, *, seed: int = 0, size_m: float = 400.0) -> "W
         faults = [*unknown.faults, *faults]
     if faults:
         raise SettingsError("generated world", faults)
-    from reasoned_explorer.knowledge.cooccurrence import load_cooccurrence
-    from reasoned_explorer.world.generator.generate import build_world
-
-    return build_world(district, seed=seed, size_m=float(size_m), statistics=load_cooccurrence())

@@ -10,14 +10,14 @@ import numpy as np
 import shapely
 
 from reasoned_explorer.geometry import GeoOrigin
-from reasoned_explorer.model import Fault, WorldError
+from reasoned_explorer.model import Fault, Gathering, WorldError
 from reasoned_explorer.model.checks import kind_faults, path_of, seed_faults
 from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.world.osm.buildings import buildings_of
 from reasoned_explorer.world.osm.features import features_of
 from reasoned_explorer.world.osm.furniture import objects_of
 from reasoned_explorer.world.osm.paths import PathIndex
-from reasoned_explorer.world.osm.reading import BoxDeg, Extract, read_extract
+from reasoned_explorer.world.osm.reading import BoxDeg, Extract, check_file, read_extract
 from reasoned_explorer.world.osm.surfaces import passages_of, regions_of, ways_of
 from reasoned_explorer.world.osm.tags import class_of
 from reasoned_explorer.world.rounding import rounded
@@ -78,8 +78,7 @@ def import_osm_with_report(
     faults = seed_faults(seed) + kind_faults("name", name, (str, type(None)), "text, or None")
     if faults:
         raise WorldError("import", faults)
-    if bbox is not None:
-        bbox = _checked(bbox)
+    bbox = check_source(file, bbox=bbox)
     extract = read_extract(file, box_deg=bbox)
     stop_if_asked()
     warnings: list[str] = []
@@ -125,6 +124,19 @@ def import_osm_with_report(
     if region_counts["stretches of unclear coast"]:
         warnings.append("the coastline is broken; check where the sea is")
     return rounded(world), ImportReport(bbox, extract.newest_edit, counts, tuple(warnings))
+
+
+def check_source(path: Path, *, bbox: BoxDeg | None = None) -> BoxDeg | None:
+    """Check all that can be known of an import before the file is read, and return the bbox as floats.
+
+    Raises:
+        WorldError: There is no such file, or the bbox cannot be used.
+    """
+    found = Gathering()
+    found.check(lambda: check_file(path))
+    checked = found.take(lambda: None if bbox is None else _checked(bbox), None)
+    found.finish("OpenStreetMap file")
+    return checked
 
 
 def _checked(bbox: BoxDeg) -> BoxDeg:

@@ -205,7 +205,7 @@ def read_extract(path: Path, *, box_deg: BoxDeg | None = None) -> Extract:
     Raises:
         WorldError: There is no such file, or it cannot be read as what its name says it is.
     """
-    _check_file(path)
+    check_file(path)
     try:
         with tempfile.TemporaryDirectory(prefix="reasoned-explorer-") as folder:
             return _read(path, box_deg, Path(folder))
@@ -214,7 +214,12 @@ def read_extract(path: Path, *, box_deg: BoxDeg | None = None) -> Extract:
         raise WorldError("OpenStreetMap file", [Fault(what, f"{_EXPECTED}, whole", _GET_ONE)]) from error
 
 
-def _check_file(path: Path) -> None:
+def check_file(path: Path) -> None:
+    """Check that there is a file that could be an OpenStreetMap file, by its name and size.
+
+    Raises:
+        WorldError: There is none.
+    """
     if not is_there(path):
         fault = Fault(f"there is no file {path}", _EXPECTED, "check the path")
     elif path.is_dir():
