@@ -92,9 +92,11 @@ def see_objects(
     focal_px = 0.5 * width_px / math.tan(half_fov)
     columns = int(header[3])
     window = _window(header, x, y, heading, half_fov, range_m)
+    if window[0] > window[1]:  # the view looks past the grid: these columns are none
+        window[3] = window[2] - 1
     count = 0
     for j in range(window[2], window[3] + 1):
-        count += max(seats.starts[j * columns + window[1] + 1] - seats.starts[j * columns + window[0]], 0)
+        count += seats.starts[j * columns + window[1] + 1] - seats.starts[j * columns + window[0]]
     seen = np.empty((count, 6))
     count = 0
     for j in range(window[2], window[3] + 1):
