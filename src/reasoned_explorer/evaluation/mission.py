@@ -383,7 +383,7 @@ def _with_overrides(settings: ExplorerSettings, planner: Planner) -> ExplorerSet
     Raises:
         SettingsError: If the agent has no such settings, or their values are out of range.
     """
-    overrides: Mapping[str, bool] = getattr(planner, "explorer", {})
+    overrides: Mapping[str, Any] = getattr(planner, "explorer", {})
     known = {each.name for each in fields(settings)}
     unknown = [Fault(f"no setting {key!r}", "a setting of the agent") for key in sorted(set(overrides) - known)]
     if unknown:
