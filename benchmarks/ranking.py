@@ -13,8 +13,9 @@ import argparse
 import itertools
 from pathlib import Path
 
+from reasoned_explorer.evaluation.bench.results import Results
 from reasoned_explorer.evaluation.bench.store import RunStore
-from reasoned_explorer.evaluation.bench.tables import Results, Sheet
+from reasoned_explorer.evaluation.bench.tables import Sheet
 from reasoned_explorer.evaluation.methods import method
 from reasoned_explorer.evaluation.metrics import paired_differences
 from reasoned_explorer.evaluation.statistics import kendall_tau_b, missions_needed

@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from reasoned_explorer.evaluation.mission import Mission as Mission
     from reasoned_explorer.evaluation.mission import MissionResult as MissionResult
-    from reasoned_explorer.evaluation.mission import MissionSettings as MissionSettings
     from reasoned_explorer.evaluation.mission import run_mission as run_mission
+    from reasoned_explorer.evaluation.mission_settings import MissionSettings as MissionSettings
     from reasoned_explorer.evaluation.record_file import read_record as read_record
     from reasoned_explorer.exploration.settings import ExplorerSettings as ExplorerSettings
     from reasoned_explorer.geometry import Pose as Pose
@@ -46,7 +46,7 @@ _HOMES = {
     "InputError": "model",
     "Mission": "evaluation.mission",
     "MissionResult": "evaluation.mission",
-    "MissionSettings": "evaluation.mission",
+    "MissionSettings": "evaluation.mission_settings",
     "PartError": "model",
     "Pose": "geometry",
     "ReasonedExplorerError": "model",

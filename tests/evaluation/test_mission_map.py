@@ -22,7 +22,7 @@ from reasoned_explorer.evaluation.mission_map import (
 from reasoned_explorer.evaluation.mission_marks import arc_path, score_colour, turned, verdict
 from reasoned_explorer.evaluation.mission_trace import FRONTIER_STATES
 from reasoned_explorer.geometry import Pose
-from reasoned_explorer.model.errors import RecordError
+from reasoned_explorer.model.errors import PartError, RecordError
 from reasoned_explorer.world.sheet import plain_settings
 from reasoned_explorer.world.taxonomy import Ground
 from reasoned_explorer.world.world import Bounds, Building, Region, Way, World, WorldObject
@@ -177,7 +177,7 @@ def test_a_full_disk_leaves_nothing_half_written(tmp_path: Path, monkeypatch: py
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(Path, "replace", full)
-    with pytest.raises(RecordError, match="No space left on device"):
+    with pytest.raises(PartError, match="No space left on device; make room"):
         draw_mission(park(), mission(), tmp_path / "mission.png", width_px=300)
     assert list(tmp_path.iterdir()) == []
 

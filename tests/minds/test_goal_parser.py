@@ -5,6 +5,8 @@ from hypothesis import strategies as st
 from reasoned_explorer.minds.embedded.goal_parser import GoalKind, ParsedGoal, parse_goal
 from reasoned_explorer.minds.embedded.lexicon import concepts
 from reasoned_explorer.model import GoalError
+from reasoned_explorer.task.catalogue import goals
+from reasoned_explorer.task.reading import read_goal
 
 THINGS = {"fire hydrant": "fire_hydrant", "bench": "bench", "mailbox": "post_box", "bicycle rack": "bicycle_parking",
           "umbrella table": "outdoor_seating", "drinking fountain": "drinking_water", "statue": "artwork"}  # fmt: skip
@@ -65,6 +67,66 @@ def test_what_asks_for_nothing_findable_is_refused_with_what_would_be_right(text
     with pytest.raises(GoalError) as caught:
         parse_goal(text)
     assert caught.value.faults[0].expected
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("Find me a bench near", "'near' what"),
+        ("Find me a bench next to the", "'next to' what"),
+        ("Find me a bench near, avoid the grass", "'near' what"),
+        ("find a bench near but stay on the path", "'near' what"),
+        ("a bench that is near", "'near' what"),
+        ("somewhere to take a nap near", "'near' what"),
+        ("Find me a bench without", "'without' what"),
+        ("Find me a bench and", "'and' what"),
+        ("Find me a bench for the", "'for' what"),
+        ("Don't find me a bench", "not to be found"),
+        ("I don't want a red bench", "not to be found"),
+        ("never take me to a bench", "not to be found"),
+        ("find anything but a bench", "not to be found"),
+        ("Find me a bench without a bench", "seeks what it denies"),
+        ("Find me a bench that is not a bench", "seeks what it denies"),
+        ("Find me a bench without any seats", "seeks what it denies"),
+        ("a bench near a tree and not near a tree", "near and denies it"),
+        ("a bench under a tree, away from trees", "under and denies it"),
+        ("stay on the road, avoid the road, find me a bench", "to be avoided"),
+    ],
+)
+def test_what_breaks_off_or_takes_back_is_refused_with_the_reason(text, told):
+    with pytest.raises(GoalError) as caught:
+        parse_goal(text)
+    assert told in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["a bench to sit on", "a bench that I can lie on", "is there a bench around", "a bench outside", "a bench near me",
+     "a bench with a tree near", "a bench without other benches", "a bench without a bench nearby",
+     "a bench near a tree but not under a tree", "a bench, not a wooden bench", "find a bench, not too far",
+     "find a bench but do not walk on the grass", "a bench within 20 m of a kiosk but not near a kiosk"],
+)  # fmt: skip
+def test_what_only_sounds_so_is_read(text):
+    assert parse_goal(text).sought[0].concept == "bench"
+
+
+def test_a_denied_relation_may_be_strengthened():
+    assert [phrase.words for phrase in parse_goal("a bench not right next to a kiosk").absent] == ["kiosk"]
+
+
+@settings(deadline=None, max_examples=60)
+@given(
+    st.sampled_from([s.rstrip(".!?") for g in goals() for s in g.sentences]),
+    st.sampled_from(["", " next to", ", near the", " without", ", and"]),
+)
+def test_what_the_judge_is_asked_the_minds_read_and_both_refuse_half_of_it(sentence, ending):
+    if not ending:
+        assert parse_goal(sentence)
+        return
+    with pytest.raises(GoalError):
+        parse_goal(sentence + ending)
+    with pytest.raises(GoalError):
+        read_goal(sentence + ending)
 
 
 def test_conditions_alone_are_told_to_be_conditions():

@@ -1,4 +1,6 @@
-from reasoned_explorer.model import Fault, InputError, MissingDependencyError, UnknownNameError
+import pytest
+
+from reasoned_explorer.model import Fault, Gathering, GoalError, InputError, MissingDependencyError, UnknownNameError
 
 
 def test_all_faults_are_told_at_once() -> None:
@@ -16,3 +18,31 @@ def test_a_misspelt_name_is_answered_with_the_near_misses() -> None:
 
 def test_a_missing_package_names_the_command_that_installs_it() -> None:
     assert "pip install x" in str(MissingDependencyError("MiniLM", "tokenizers", "pip install x"))
+
+
+def _refuse(error: InputError) -> int:
+    raise error
+
+
+def test_errors_are_gathered_while_what_is_sound_goes_on() -> None:
+    found = Gathering()
+    assert found.take(lambda: 3, 0) == 3
+    found.finish("input")
+    goal = GoalError("goal", [Fault("it is empty", "a sentence")])
+    name = UnknownNameError("planner", "x", ["y"])
+    assert found.take(lambda: _refuse(goal), 0) == 0
+    with pytest.raises(GoalError) as alone:
+        found.finish("input")
+    assert alone.value is goal
+    found.add(name, name)
+    with pytest.raises(InputError) as several:
+        found.finish("input")
+    assert [fault.what for fault in several.value.faults] == ["goal: it is empty", "unknown planner: 'x'"]
+    assert type(several.value) is InputError
+
+
+def test_errors_of_one_type_stay_of_that_type() -> None:
+    found = Gathering()
+    found.add(*(GoalError("goal", [Fault(what)]) for what in ("one", "two")))
+    with pytest.raises(GoalError, match="2 faults"):
+        found.finish("goals")

@@ -1,9 +1,12 @@
+from dataclasses import replace
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from reasoned_explorer.model import GoalError
 from reasoned_explorer.task.catalogue import goals
+from reasoned_explorer.task.contradictions import contradictions
 from reasoned_explorer.task.goal_spec import AWAY_M, NEAR_M, Relation
 from reasoned_explorer.task.reading import read_goal
 from reasoned_explorer.world.taxonomy import OBJECT_CLASSES, Ground
@@ -171,6 +174,104 @@ def test_what_cannot_be_graded_is_refused_with_the_reason(text, told):
     assert told in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("Find me a bench near", "'near' what"),
+        ("Find me a bench next to the", "'next to' what"),
+        ("Find me a bench near, avoid the grass", "'near' what"),
+        ("Find me a bench that is near", "'that is near' what"),
+        ("Find me a bench with", "'with' what"),
+        ("somewhere to take a nap near", "'near' what"),
+        ("Find me a bench behind the", "'behind' what"),
+        ("Find me a bench for", "'for' what"),
+        ("Find me a bench and", "'and' what"),
+        ("Find me a bench but not", "'but not' what"),
+        ("Find me a bench, follow", "'follow' what"),
+    ],
+)
+def test_a_sentence_that_breaks_off_is_refused(text, told):
+    with pytest.raises(GoalError, match="nothing follows") as caught:
+        read_goal(text)
+    assert told in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["something to sit on", "somewhere I can sit in", "is there a bench around", "a bench outside", "a bench near me",
+     "a bench with a tree near", "a bench in a quiet place", "a bench with armrests", "a bench that I can use"],
+)  # fmt: skip
+def test_what_ends_in_a_preposition_may_be_whole(text):
+    assert "bench" in read_goal(text).class_names
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["Don't find me a bench", "do not look for a bench", "Please don't show me a red bench", "I don't want a bench",
+     "Find me no bench", "Find me anything but a bench", "something other than a bench", "a bench that is not a bench"],
+)  # fmt: skip
+def test_what_is_not_to_be_found_is_no_goal(text):
+    with pytest.raises(GoalError, match="not to be found"):
+        read_goal(text)
+
+
+@pytest.mark.parametrize(
+    "text", ["No, find me a bench", "I don't know where the bench is", "Don't worry, just find me a bench"]
+)
+def test_a_denial_of_something_else_is_none_of_the_goal(text):
+    assert read_goal(text).class_names == ("bench",)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["Find me a bench without a bench", "benches with no bench", "a bench near a tree and not near a tree",
+     "a bench under a tree, away from trees", "a bench in the sun, in the shade", "a quiet bench near the road",
+     "a bench with a backrest without a backrest", "stay on the grass but not on the grass and find a bench",
+     "a bench within 10 m of a kiosk and more than 20 m from a kiosk"],
+)  # fmt: skip
+def test_what_contradicts_itself_is_refused(text):
+    with pytest.raises(GoalError, match=r"one of the two"):
+        read_goal(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["a bench without other benches nearby", "a bench without a bench nearby", "a bench away from the benches",
+     "a bench near a tree but not under a tree", "a bench within 20 m of a kiosk but not near a kiosk",
+     "a tree not under a tree"],
+)  # fmt: skip
+def test_what_only_sounds_like_a_contradiction_is_read(text):
+    assert read_goal(text).level == 2
+
+
+def test_a_denied_relation_is_turned_round_whatever_stands_between():
+    assert only_condition("a bench and not near a kiosk").negated
+    assert only_condition("a bench not right next to a kiosk").negated
+    assert only_condition("a bench, not very quiet") == replace(only_condition("a quiet bench"), negated=False)
+    assert read_goal("I don't want to walk on the grass, find me a bench").shunned == {Ground.GRASS}
+
+
+SENTENCES = sorted({s.rstrip(".!?") for g in goals() for s in g.sentences})
+
+
+@settings(max_examples=100)
+@given(st.sampled_from(SENTENCES), st.sampled_from([" next to", " near the", ", under", " but not", ", and"]))
+def test_no_sentence_may_break_off(sentence, ending):
+    with pytest.raises(GoalError):
+        read_goal(sentence + ending)
+
+
+@pytest.mark.parametrize("item", OBJECT_CLASSES.values(), ids=lambda item: item.name)
+def test_nothing_is_sought_without_itself_or_against_ones_wish(item):
+    for text in (
+        f"Find a {item.noun} without a {item.noun}",
+        f"Don't find a {item.noun}",
+        f"I don't need {item.plural}",
+    ):
+        with pytest.raises(GoalError):
+            read_goal(text)
+
+
 def test_several_faults_are_told_at_once():
     with pytest.raises(GoalError) as caught:
         read_goal("find a bench near a blorp, avoid the lava")
@@ -201,6 +302,22 @@ def test_any_heap_of_known_words_is_read_or_refused(heap):
         return
     assert spec.class_names
     assert not spec.wanted & spec.shunned
+
+
+_JOINTS = ("not", "don't", "without", "near", "under", "and", "or", ",", "no", "except", "other than", "but", "avoid",
+           "stay on", "the bench", "a tree", "the grass", "find me", "quiet", "in the sun", "the", "me", "nearby",
+           "within 10 m of", "anything but", "to", "behind")  # fmt: skip
+
+
+@settings(max_examples=300)
+@given(st.lists(st.sampled_from(_JOINTS), max_size=10))
+def test_any_heap_of_joints_is_read_without_contradiction_or_refused(heap):
+    try:
+        spec = read_goal(" ".join(heap))
+    except GoalError:
+        return
+    assert spec.class_names
+    assert not any(contradictions(row.conditions, row.attributes) for row in spec.sought)
 
 
 @settings(max_examples=50)

@@ -2,10 +2,10 @@ from pathlib import Path
 
 import pytest
 
-from reasoned_explorer.model import SettingsError, UnknownNameError, WorldError
+from reasoned_explorer.model import InputError, SettingsError, UnknownNameError, WorldError
 from reasoned_explorer.world.digest import world_digest
 from reasoned_explorer.world.files import save_world
-from reasoned_explorer.world.opening import open_world
+from reasoned_explorer.world.opening import check_world_name, open_world
 from tests.world.worlds import courtyard
 
 
@@ -78,3 +78,25 @@ def test_a_real_place_is_permuted_within_its_bounding_box(osm_folder: Path) -> N
 def test_what_is_no_permutation_is_refused(spec: str) -> None:
     with pytest.raises(WorldError):
         open_world(spec)
+
+
+@pytest.mark.parametrize(
+    "spec", ["prak:7", "park:7@5000", "nowhere.osm", "nowhere.rexworld", "nowhere.osm~permuted:1", "?"]
+)
+def test_a_name_is_checked_without_making_the_world(spec: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(InputError) as refused:
+        check_world_name(spec)
+    with pytest.raises(InputError) as opened:
+        open_world(spec)
+    assert str(refused.value) == str(opened.value)
+    monkeypatch.setattr("reasoned_explorer.world.generator.generate_world", None)
+    check_world_name("park:7@400~permuted:1")
+
+
+def test_a_name_and_its_box_are_wrong_at_once() -> None:
+    with pytest.raises(InputError) as raised:
+        check_world_name("prak:7", bbox=(1.0, 2.0, 3.0, 4.0))
+    assert len(raised.value.faults) == 2
+    with pytest.raises(WorldError) as raised:
+        check_world_name("nowhere.osm", bbox=(3.0, 2.0, 1.0, 1.0))
+    assert len(raised.value.faults) == 3

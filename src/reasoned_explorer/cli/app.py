@@ -50,7 +50,7 @@ def run(
         str | None,
         typer.Option(help="lat,lon,heading in degrees in a real place; x,y,heading in metres and degrees elsewhere."),
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Everything that is drawn is keyed by it.")] = 0,
+    seed: Annotated[int, typer.Option(help="Everything that is drawn is keyed by it.")] = 0,
     planner: Annotated[str, typer.Option(help="See rex names.")] = "llm-rrt",
     set_: Annotated[
         list[str] | None, typer.Option("--set", help="A setting of the planner, e.g. depth=1; may be repeated.")
@@ -77,7 +77,7 @@ def run(
 ) -> None:
     """Run one mission: from a sentence to "Found Goal".
 
-    Exit code 0: found. 1: ended without. 2: bad input. 3: a part failed.
+    Exit code 0: found. 1: ended without. 2: bad input. 3: a part failed. 130: stopped with Ctrl-C.
     """
     from reasoned_explorer.cli.run import RunOptions, run_from_options
 

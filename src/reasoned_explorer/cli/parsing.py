@@ -6,8 +6,11 @@ from reasoned_explorer.geometry import Pose, normalise_heading_rad
 from reasoned_explorer.model import Fault, SettingsError, StartError, WorldError
 from reasoned_explorer.world.world import World
 
+#: lon0, lat0, lon1, lat1.
+BoxDeg = tuple[float, float, float, float]
 
-def parse_bbox(text: str | None) -> tuple[float, float, float, float] | None:
+
+def parse_bbox(text: str | None) -> BoxDeg | None:
     """Return lon0, lat0, lon1, lat1 in degrees; what they must satisfy is the importer's to say.
 
     Raises:
@@ -19,6 +22,18 @@ def parse_bbox(text: str | None) -> tuple[float, float, float, float] | None:
     if faults:
         raise WorldError(f"bounding box {text!r}", [*faults, Fault("a bounding box", "lon0,lat0,lon1,lat1 in degrees")])
     return numbers[0], numbers[1], numbers[2], numbers[3]
+
+
+def check_start_form(text: str | None) -> None:
+    """Check what can be known of a start before its world is there: that it is two or three finite numbers.
+
+    Raises:
+        StartError: If it is not.
+    """
+    faults = [] if text is None else _numbers(text, 3 if text.count(",") != 1 else 2)[1]
+    if faults:
+        form = "lat,lon,heading in degrees in a real place, x,y,heading in metres and degrees elsewhere"
+        raise StartError(f"start {text!r} (expected {form})", faults)
 
 
 def parse_start(text: str | None, world: World) -> Pose | None:
@@ -65,6 +80,34 @@ def parse_levels(text: str) -> tuple[int, ...]:
     if faults:
         raise SettingsError("--levels", faults)
     return tuple(sorted({int(part) for part in parts}))
+
+
+def parse_planners(text: str) -> list[str]:
+    """Return the names of planners between the commas; what is a setting belongs to the name before it."""
+    names: list[str] = []
+    for part in (part.strip() for part in text.split(",")):
+        if names and "=" in part and ":" not in part and ":" in names[-1]:
+            names[-1] += f",{part}"
+        elif part:
+            names.append(part)
+    return names
+
+
+def parse_seeds(text: str) -> tuple[int, ...]:
+    """Return the seeds that a person means.
+
+    Raises:
+        SettingsError: If something is no whole number from 0, or there is none.
+    """
+    parts = [part.strip() for part in text.split(",")]
+    faults = [
+        Fault(f"{part!r}", "whole numbers from 0 with commas between them")
+        for part in parts
+        if not (part.isascii() and part.isdecimal())
+    ]
+    if faults:
+        raise SettingsError("--seeds", faults)
+    return tuple(int(part) for part in parts)
 
 
 def _extent_deg(world: World) -> str:

@@ -2,22 +2,28 @@
 
 import math
 import re
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import typer
 from rich.console import Console
 
 from reasoned_explorer.cli.answers import ExitCode
-from reasoned_explorer.cli.parsing import parse_bbox, parse_start
+from reasoned_explorer.cli.parsing import BoxDeg, check_start_form, parse_bbox, parse_start
 from reasoned_explorer.cli.progress import Progress, header_lines, summary_lines
-from reasoned_explorer.evaluation.mission import Mission, MissionResult, MissionSettings
+from reasoned_explorer.evaluation.mission import Mission, MissionResult
+from reasoned_explorer.evaluation.mission_settings import MissionSettings, errors_of
 from reasoned_explorer.exploration.settings import ExplorerSettings
-from reasoned_explorer.model import Fault, RecordError
+from reasoned_explorer.model import Fault, Gathering, RecordError, SettingsError
+from reasoned_explorer.model.checks import is_there
 from reasoned_explorer.model.record import MissionEnd, StepRecord
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.planning.setting_pairs import parse_planner_settings
+from reasoned_explorer.task.reading import read_goal
 from reasoned_explorer.world.files import save_world
-from reasoned_explorer.world.opening import KEPT_SUFFIX, open_world
+from reasoned_explorer.world.opening import KEPT_SUFFIX, check_world_name, open_world
 
 MAP_NAME = "map.png"
 WORLD_NAME = f"world{KEPT_SUFFIX}"
@@ -52,15 +58,17 @@ class RunOptions:
     draw: bool
     quiet: bool
 
-    def settings(self) -> MissionSettings:
-        """Return the mission's settings.
-
-        Raises:
-            SettingsError: If some are out of range.
-        """
-        return MissionSettings(
+    def settings(self, found: Gathering) -> MissionSettings:
+        """Return the mission's settings; what is wrong with them is kept in ``found``, defaults in its stead."""
+        explorer = found.take(self._explorer, ExplorerSettings())
+        found.check(lambda: parse_planner_settings(self.planner_settings))
+        sound: dict[str, Any] = {}
+        for pair in self.planner_settings:
+            with suppress(SettingsError):
+                sound |= parse_planner_settings([pair])
+        settings = MissionSettings(
             planner=self.planner,
-            planner_settings=parse_planner_settings(self.planner_settings),
+            planner_settings=sound,
             minds=self.minds,
             visionary=self.visionary,
             evaluator=self.evaluator,
@@ -69,27 +77,53 @@ class RunOptions:
             vehicle=self.vehicle,
             latency=self.latency,
             clock=self.clock,
-            explorer=ExplorerSettings(
-                views=self.views,
-                sweep_rad=math.radians(self.sweep_deg),
-                t_max_s=self.t_max_min * 60.0,
-                max_steps=self.max_steps,
-                looks_to_confirm=self.looks,
-            ),
+            explorer=explorer,
             success_radius_m=self.radius_m,
             seed=self.seed,
         )
+        found.add(*errors_of(settings))
+        return settings
+
+    def _explorer(self) -> ExplorerSettings:
+        return ExplorerSettings(
+            views=self.views,
+            sweep_rad=math.radians(self.sweep_deg),
+            t_max_s=self.t_max_min * 60.0,
+            max_steps=self.max_steps,
+            looks_to_confirm=self.looks,
+        )
+
+    def checked(self) -> tuple[MissionSettings, BoxDeg | None, Path]:
+        """Return settings, bounding box and folder, once all that was typed has been checked.
+
+        Nothing has been made or read then. Where a start lies is checked when its world is there.
+
+        Raises:
+            InputError: With everything that is wrong.
+        """
+        found = Gathering()
+        found.check(lambda: read_goal(self.goal))
+        bbox = found.take(lambda: parse_bbox(self.bbox), None)
+        seed = max(self.seed, 0)  # a wrong one is told once, as the mission's
+        found.check(lambda: check_world_name(self.world, seed=seed, bbox=bbox))
+        found.check(lambda: check_start_form(self.start))
+        settings = self.settings(found)
+        folder = found.take(lambda: _folder(self), Path())
+        found.finish("mission")
+        return settings, bbox, folder
 
 
 def run_from_options(options: RunOptions) -> None:
     """Run a mission, show it while it runs, keep its record and its map, and exit with what came of it."""
     console = Console(highlight=False)
-    settings = options.settings()
+    settings, bbox, folder = options.checked()
     if not options.quiet and not _kernels_are_compiled():
         console.print("compiling the kernels, which takes up to a minute (the first time only) …", markup=False)
-    world = open_world(options.world, seed=options.seed, bbox=parse_bbox(options.bbox))
+    stop_if_asked()
+    world = open_world(options.world, seed=options.seed, bbox=bbox)
+    stop_if_asked()
     mission = Mission(options.goal, world, settings, start=parse_start(options.start, world))
-    folder = _folder(options)
+    stop_if_asked()
     if not options.quiet:
         for line in header_lines(mission.header):
             console.print(line, markup=False, soft_wrap=True)
@@ -117,8 +151,10 @@ def _kernels_are_compiled() -> bool:
 
 
 def _keep(result: MissionResult, folder: Path, *, draw: bool) -> None:
+    stop_if_asked()
     save_world(result.world, folder / WORLD_NAME)
     if draw:
+        stop_if_asked()
         result.draw_map(folder / MAP_NAME)
 
 
@@ -131,7 +167,7 @@ def _exit_code(result: MissionResult) -> ExitCode:
 def _folder(options: RunOptions) -> Path:
     """Return where the run is kept: as given, or the first free name under ``runs/``."""
     if options.out is not None:
-        if options.out.exists() and (not options.out.is_dir() or any(options.out.iterdir())):
+        if is_there(options.out) and (not options.out.is_dir() or any(options.out.iterdir())):
             fault = Fault(
                 f"{options.out} is there and not an empty folder", "a new or empty folder", "give another --out"
             )

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from reasoned_explorer.evaluation.mission import MissionSettings
+from reasoned_explorer.evaluation.mission_settings import MissionSettings
 from reasoned_explorer.model import Fault, InputError, SettingsError, UnknownNameError
 from reasoned_explorer.planning.registry import PLANNERS
 from reasoned_explorer.planning.setting_pairs import parse_planner_settings

@@ -1,36 +1,48 @@
 """One mission from a sentence to its score: puts the rooms together, runs the agent, has the judge look at it."""
 
 import gc
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field, fields, replace
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, dataclass, replace
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from reasoned_explorer.clock import Clock, MixedClock, RealClock, VirtualClock
 from reasoned_explorer.evaluation.guide import GUIDE_LABEL, Guide
+from reasoned_explorer.evaluation.mission_settings import CLOCKS, errors_of, with_overrides
+from reasoned_explorer.evaluation.mission_settings import MissionSettings as MissionSettings  # noqa: PLC0414 - is had from here, too
 from reasoned_explorer.evaluation.record_file import RecordWriter
 from reasoned_explorer.evaluation.scoring import Look, MissionScore, outcome_of, score
 from reasoned_explorer.evaluation.truth import OracleTruth
 from reasoned_explorer.exploration.explorer import Exploration, Explorer, Parts
-from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.minds.context import MindContext
 from reasoned_explorer.minds.latency import latency_profile
 from reasoned_explorer.minds.ledger import CallRecord, Ledger
 from reasoned_explorer.minds.registry import make_minds
-from reasoned_explorer.model import Fault, LegOutcome, SettingsError, TrackPoint, UnknownNameError
+from reasoned_explorer.model import (
+    Fault,
+    Gathering,
+    InputError,
+    LegOutcome,
+    RecordError,
+    RecordWriteError,
+    SettingsError,
+    StartError,
+    TrackPoint,
+    WorldError,
+)
+from reasoned_explorer.model.checks import kind_faults, path_of
 from reasoned_explorer.model.record import EpisodeRecord, MissionEnd, MissionHeader, MissionSummary, StepRecord
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.perception.context import CaptionerContext
 from reasoned_explorer.perception.registry import CAPTIONERS
-from reasoned_explorer.planning import Planner
 from reasoned_explorer.planning.registry import make_planner
 from reasoned_explorer.simulation.eyes import Eyes
-from reasoned_explorer.simulation.vehicle import SimulatedVehicle, check_start
+from reasoned_explorer.simulation.vehicle import SimulatedVehicle, check_on_map, check_start
+from reasoned_explorer.task.goal_spec import GoalSpec
 from reasoned_explorer.task.judge import Judge, TrackReport
 from reasoned_explorer.task.reading import read_goal
 from reasoned_explorer.task.sampling import SamplingSettings, sample_start
@@ -40,51 +52,8 @@ from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.geodesic import Traveller
 from reasoned_explorer.world.world import World
 
-CLOCKS: Mapping[str, Callable[[], Clock]] = {"virtual": VirtualClock, "mixed": MixedClock, "real": RealClock}
-#: Who carries a mission out: the method's agent, or the bound that knows the shortest compliant way.
-AGENTS = ("explorer", "guide")
 #: A seeded random start is at least and at most this far, on the shortest compliant way, from being successful.
 START_RANGE_M = (60.0, 400.0)
-
-
-@dataclass(frozen=True, slots=True)
-class MissionSettings:
-    """Who does what in a mission, by name, and how.
-
-    Attributes:
-        planner: A registered planner.
-        planner_settings: Of that planner.
-        minds: Registered minds; they fill every role that has no name of its own.
-        visionary: Who imagines.
-        evaluator: Who scores.
-        checker: Who notices the goal.
-        captioner: A registered captioner.
-        vehicle: A registered vehicle profile.
-        latency: A latency profile: how long modelled calls take.
-        clock: ``virtual``, ``mixed`` or ``real``.
-        explorer: How the agent explores.
-        success_radius_m: R of the judge, metres.
-        seed: Of the mission: everything that is drawn is keyed by it.
-        agent: One of `AGENTS`; the guide asks no planner, mind or captioner.
-
-    A planner may bring settings of the agent with it (`planning.Planner`); a mission's own ``settings`` are those that
-    are in force.
-    """
-
-    planner: str = "llm-rrt"
-    planner_settings: Mapping[str, Any] = field(default_factory=dict)
-    minds: str = "embedded"
-    visionary: str | None = None
-    evaluator: str | None = None
-    checker: str | None = None
-    captioner: str = "noisy"
-    vehicle: str = "drone"
-    latency: str = "gpt-2023"
-    clock: str = "virtual"
-    explorer: ExplorerSettings = field(default_factory=ExplorerSettings)
-    success_radius_m: float = 15.0
-    seed: int = 0
-    agent: str = "explorer"
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +83,7 @@ class MissionResult:
         """Draw what happened on a map, PNG, SVG or PDF by the path's suffix."""
         from reasoned_explorer.evaluation.record_map import draw_record
 
-        draw_record(self.world, self.record, Path(path))
+        draw_record(self.world, self.record, path_of(path, "map picture", RecordError))
 
 
 class Mission:
@@ -128,10 +97,12 @@ class Mission:
         judge: A judge of this goal, world, vehicle and success radius from an earlier mission, to share its work with.
 
     Raises:
-        GoalError: If the goal cannot be understood, or nothing in this world satisfies it.
-        StartError: If no mission can begin at the start, or no start can be found.
+        GoalError: If the goal cannot be understood.
+        StartError: If the start is none or no mission can begin at it, or no start can be found.
+        WorldError: If the world is none.
         UnknownNameError: If a name is not registered.
-        SettingsError: If settings are out of range.
+        SettingsError: If settings are none or out of range.
+        InputError: If several of these are wrong, with all that can be told without looking into the world.
     """
 
     def __init__(
@@ -143,18 +114,19 @@ class Mission:
         start: Pose | None = None,
         judge: Judge | None = None,
     ) -> None:
-        self.settings = settings or MissionSettings()
+        _check_arguments(world, settings, start)
+        self.settings = settings if settings is not None else MissionSettings()
         self.atlas = world if isinstance(world, Atlas) else Atlas(world)
+        spec = _checked(goal, self.atlas.world, self.settings, start)
         self.profile = vehicle_profile(self.settings.vehicle)
-        self.judge = judge or judge_of(goal, self.atlas, self.settings.vehicle, self.settings.success_radius_m)
+        stop_if_asked()
+        self.judge = judge or judge_of(spec, self.atlas, self.settings.vehicle, self.settings.success_radius_m)
         self.spec = self.judge.spec
         self.goal = self.spec.goal
+        stop_if_asked()
         self.start = self._start(start, self.judge.traveller)
-        if self.settings.clock not in CLOCKS:
-            raise UnknownNameError("clock", self.settings.clock, tuple(CLOCKS))
+        stop_if_asked()
         self.clock = CLOCKS[self.settings.clock]()
-        if self.settings.agent not in AGENTS:
-            raise UnknownNameError("agent", self.settings.agent, AGENTS)
         # Privileged minds and the guide alone may read the truth; they are the only ones that ask for it.
         truth = OracleTruth(self.atlas, self.judge, self.profile, self.settings.explorer)
         self.explorer: Explorer | Guide
@@ -168,7 +140,9 @@ class Mission:
             on_step: Called with each step's record as soon as the step is over.
 
         Raises:
-            RecordError: If the record cannot be written; the mission ends at once and what was written stays.
+            RecordError: If no record can be begun in the folder.
+            RecordWriteError: If the record cannot be written on; the mission ends at once, and the record at its last
+                whole step. Before the first one nothing is left.
             KeyboardInterrupt: If a person stops it; the record then says so and ends at its last whole step.
         """
         header = self.header
@@ -198,16 +172,26 @@ class Mission:
             with _rare_collections():
                 exploration = self.clock.run(self.explorer.run(self.goal))
         except KeyboardInterrupt:
-            stopped = self._exploration_so_far(steps)
-            summary, _ = self._summary(header, stopped, steps)
-            if writer is not None:
-                writer.summary(summary)
+            self._break_off("stopped by a person", header, steps, writer)
+            raise
+        except RecordWriteError as error:
+            # A summary is short: often there is room for it where there was none for a step.
+            with suppress(RecordWriteError):
+                self._break_off(str(error), header, steps, writer)
             raise
         summary, score = self._summary(header, exploration, steps)
         if writer is not None:
             writer.summary(summary)
         folder = writer.path.parent if writer is not None else None
         return MissionResult(EpisodeRecord(header, tuple(steps), summary), self.atlas.world, score, folder)
+
+    def _break_off(
+        self, reason: str, header: MissionHeader, steps: list[StepRecord], writer: RecordWriter | None
+    ) -> None:
+        """Have the record say why it ends here."""
+        if writer is not None:
+            stopped = self._exploration_so_far(steps, reason)
+            writer.summary(self._summary(header, stopped, steps)[0])
 
     def _start(self, start: Pose | None, traveller: Traveller) -> Pose:
         if start is not None:
@@ -252,7 +236,7 @@ class Mission:
         captioner = CAPTIONERS.load(settings.captioner)(CaptionerContext(self.clock, settings.seed, charge_captions))
         planner = make_planner(settings.planner, minds, settings.planner_settings)
         self._labels = (planner.label, minds.label, captioner.label)
-        explorer = _with_overrides(settings.explorer, planner)
+        explorer = with_overrides(settings.explorer, planner)
         self.settings = replace(settings, explorer=explorer)
         parts = Parts(self._vehicle(), captioner, planner, minds.checker, self.clock, ledger)
         return Explorer(parts, explorer)
@@ -305,11 +289,11 @@ class Mission:
             for index, grade in self.judge.satisfying
         )
 
-    def _exploration_so_far(self, steps: list[StepRecord]) -> Exploration:
+    def _exploration_so_far(self, steps: list[StepRecord], reason: str) -> Exploration:
         last = steps[-1] if steps else None
         plan_s = sum(step.plan_s for step in steps)
         ct_s, tt_s = (last.ct_s, last.tt_s) if last else (0.0, 0.0)
-        return Exploration(MissionEnd.INTERRUPTED, "stopped by a person", ct_s, tt_s, plan_s, len(steps))
+        return Exploration(MissionEnd.INTERRUPTED, reason, ct_s, tt_s, plan_s, len(steps))
 
     def _summary(
         self, header: MissionHeader, ended: Exploration, steps: list[StepRecord]
@@ -377,18 +361,30 @@ class Mission:
         return f"the nearest is {end.nearest_m:.0f} m away" if np.isfinite(end.nearest_m) else "there is none"
 
 
-def _with_overrides(settings: ExplorerSettings, planner: Planner) -> ExplorerSettings:
-    """Return the agent's settings with those that belong to a planner.
+def _check_arguments(world: object, settings: object, start: object) -> None:
+    made = "open_world makes one of a name or a file"
+    found: dict[type[InputError], list[Fault]] = {
+        WorldError: kind_faults("world", world, (World, Atlas), "a World or an Atlas", made),
+        SettingsError: kind_faults("settings", settings, (MissionSettings, type(None)), "MissionSettings, or None"),
+        StartError: kind_faults("start", start, (Pose, type(None)), "a Pose, or None for a random one"),
+    }
+    kinds = [kind for kind, faults in found.items() if faults]
+    if kinds:
+        kind = kinds[0] if len(kinds) == 1 else InputError
+        raise kind("mission", [fault for faults in found.values() for fault in faults])
 
-    Raises:
-        SettingsError: If the agent has no such settings, or their values are out of range.
-    """
-    overrides: Mapping[str, Any] = getattr(planner, "explorer", {})
-    known = {each.name for each in fields(settings)}
-    unknown = [Fault(f"no setting {key!r}", "a setting of the agent") for key in sorted(set(overrides) - known)]
-    if unknown:
-        raise SettingsError(f"agent settings of the planner {planner.name}", unknown)
-    return replace(settings, **overrides)
+
+def _checked(goal: str, world: World, settings: MissionSettings, start: Pose | None) -> GoalSpec:
+    """Return what the goal asks for, once all that is given has been checked that needs no look into the world."""
+    found = Gathering()
+    spec = found.take(lambda: read_goal(goal), None)
+    found.add(*errors_of(settings))
+    if start is not None:
+        found.check(lambda: check_on_map(world.bounds, start))
+    found.finish("mission")
+    if spec is None:  # its error was raised
+        raise AssertionError
+    return spec
 
 
 @cache
@@ -416,7 +412,7 @@ def traveller_of(profile: VehicleProfile) -> Traveller:
     return Traveller(flies=profile.flies, radius_m=profile.radius_m, collides=profile.collides)
 
 
-def judge_of(goal: str, atlas: Atlas, vehicle: str, success_radius_m: float) -> Judge:
+def judge_of(goal: str | GoalSpec, atlas: Atlas, vehicle: str, success_radius_m: float) -> Judge:
     """Return the judge of a goal in a world for a vehicle.
 
     Raises:
@@ -427,7 +423,7 @@ def judge_of(goal: str, atlas: Atlas, vehicle: str, success_radius_m: float) -> 
     profile = vehicle_profile(vehicle)
     return Judge(
         atlas,
-        read_goal(goal),
+        read_goal(goal) if isinstance(goal, str) else goal,
         traveller=traveller_of(profile),
         success_radius_m=success_radius_m,
         camera_height_m=profile.camera_height_m,
@@ -467,4 +463,4 @@ def run_mission(
 ) -> MissionResult:
     """Run one mission; see `Mission` for the arguments and what it raises."""
     mission = Mission(goal, world, settings, start=start)
-    return mission.run(folder=Path(folder) if folder is not None else None, on_step=on_step)
+    return mission.run(folder=path_of(folder, "folder", RecordError) if folder is not None else None, on_step=on_step)

@@ -3,6 +3,7 @@
 from reasoned_explorer.model.answer import LIKERT_LEVELS, Assessment, Verdict, likert_from_score
 from reasoned_explorer.model.errors import (
     Fault,
+    Gathering,
     GoalError,
     InputError,
     MissingDependencyError,
@@ -24,6 +25,7 @@ __all__ = [
     "Assessment",
     "Camera",
     "Fault",
+    "Gathering",
     "Goal",
     "GoalError",
     "InputError",

@@ -6,8 +6,11 @@ first and 3 for the second.
 """
 
 import difflib
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,3 +119,52 @@ class PartError(ReasonedExplorerError):
     def __init__(self, part: str, reason: str) -> None:
         self.part, self.reason = part, reason
         super().__init__(f"{part}: {reason}")
+
+
+class Gathering:
+    """Goes on with what is sound of an input while it keeps what is wrong with the rest, to tell it all at once.
+
+    Attributes:
+        errors: What went wrong so far, in order; what was said already is not said again.
+    """
+
+    def __init__(self) -> None:
+        self.errors: list[InputError] = []
+
+    def take(self, make: Callable[[], T], instead: T) -> T:
+        """Return what a call returns, or something else, its error kept, where it refuses its input."""
+        try:
+            return make()
+        except InputError as error:
+            self.add(error)
+            return instead
+
+    def check(self, call: Callable[[], object]) -> None:
+        """Keep the error of a call that refuses its input."""
+        self.take(call, None)
+
+    def add(self, *errors: InputError) -> None:
+        """Keep errors."""
+        for error in errors:
+            if str(error) not in map(str, self.errors):
+                self.errors.append(error)
+
+    @property
+    def faults(self) -> list[Fault]:
+        """All that is wrong, each with what it is wrong with."""
+        return [
+            replace(fault, what=f"{error.subject}: {fault.what}") for error in self.errors for fault in error.faults
+        ]
+
+    def finish(self, subject: str) -> None:
+        """Raise what was kept: a single error as it is, several as one of the type that they share.
+
+        Raises:
+            InputError: If anything was kept; an error of its own type where there is only one.
+        """
+        if len(self.errors) == 1:
+            raise self.errors[0]
+        if self.errors:
+            kinds = {type(error) for error in self.errors} - {UnknownNameError}
+            shared = len(kinds) == 1 and all(type(error) in kinds for error in self.errors)
+            raise (kinds.pop() if shared else InputError)(subject, self.faults)

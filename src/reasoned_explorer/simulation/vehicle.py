@@ -22,6 +22,7 @@ from reasoned_explorer.model import (
     TrackPoint,
     View,
 )
+from reasoned_explorer.model.checks import is_within
 from reasoned_explorer.simulation.motion import NO_DISCS, NO_WALLS, Body, End, Ground, Motion
 from reasoned_explorer.simulation.sensors import SensorNoise, sensor_noise
 from reasoned_explorer.simulation.sighting import ViewContent
@@ -33,7 +34,7 @@ from reasoned_explorer.world.taxonomy import Ground as GroundKind
 if TYPE_CHECKING:
     from reasoned_explorer.world.atlas import Atlas
     from reasoned_explorer.world.sight import Obstacles
-    from reasoned_explorer.world.world import Building, Ring
+    from reasoned_explorer.world.world import Bounds, Building, Ring
 
 #: What is at this height is in a walker's way, metres: about its chest.
 _WALKER_Z_M = 0.3
@@ -53,6 +54,22 @@ class Eyes(Protocol):
         ...
 
 
+def check_on_map(bounds: "Bounds", pose: Pose) -> None:
+    """Check what can be known of a start without looking at what stands there.
+
+    Raises:
+        StartError: If a value is not finite or the pose is off the world.
+    """
+    if not all(is_within(value) for value in (pose.x_m, pose.y_m, pose.z_m, pose.heading_rad)):
+        raise StartError("start", [Fault(f"{pose}", "finite coordinates and heading")])
+    if not bounds.contains(pose.x_m, pose.y_m):
+        what = f"({pose.x_m:g}, {pose.y_m:g}) is off the world"
+        expected = (
+            f"x in [{bounds.min_x_m:g}, {bounds.max_x_m:g}] and y in [{bounds.min_y_m:g}, {bounds.max_y_m:g}] metres"
+        )
+        raise StartError("start", [Fault(what, expected, "choose another start or a random one")])
+
+
 def check_start(atlas: "Atlas", profile: VehicleProfile, pose: Pose) -> None:
     """Check that a mission can begin at a pose.
 
@@ -60,15 +77,8 @@ def check_start(atlas: "Atlas", profile: VehicleProfile, pose: Pose) -> None:
         StartError: If it cannot: a value is not finite, the pose is off the world, inside a building or a solid thing,
             or on ground that this vehicle cannot stand on. All faults at once.
     """
+    check_on_map(atlas.world.bounds, pose)
     at = f"({pose.x_m:g}, {pose.y_m:g})"
-    if not is_finite(pose.x_m, pose.y_m, pose.z_m, pose.heading_rad):
-        raise StartError("start", [Fault(f"{pose}", "finite coordinates and heading")])
-    bounds = atlas.world.bounds
-    if not bounds.contains(pose.x_m, pose.y_m):
-        expected = (
-            f"x in [{bounds.min_x_m:g}, {bounds.max_x_m:g}] and y in [{bounds.min_y_m:g}, {bounds.max_y_m:g}] metres"
-        )
-        raise StartError("start", [Fault(f"{at} is off the world", expected, "choose another start or a random one")])
     faults = []
     remedy = "choose another start or a random one"
     building = _building_at(atlas, pose.x_m, pose.y_m)

@@ -78,6 +78,13 @@ class TrackReport:
         return dict(self.end.at_radius)[radius_m] and self.compliance.compliant
 
 
+def faults_of_radius(success_radius_m: float) -> list[Fault]:
+    """Return what is wrong with a success radius, metres; none if it is in [1, 50]."""
+    if 1.0 <= success_radius_m <= 50.0:
+        return []
+    return [Fault(f"success_radius_m is {success_radius_m}", "metres in [1, 50]")]
+
+
 class Judge:
     """Judges missions with one goal in one world.
 
@@ -103,9 +110,7 @@ class Judge:
         camera_height_m: float = 1.0,
         grader: Grader | None = None,
     ) -> None:
-        faults = []
-        if not 1.0 <= success_radius_m <= 50.0:
-            faults.append(Fault(f"success_radius_m is {success_radius_m}", "metres in [1, 50]"))
+        faults = faults_of_radius(success_radius_m)
         if not 0.0 <= camera_height_m <= 100.0:
             faults.append(Fault(f"camera_height_m is {camera_height_m}", "metres in [0, 100]"))
         if faults:

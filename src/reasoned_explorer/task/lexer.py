@@ -21,6 +21,7 @@ class Kind(Enum):
     """What a token is to the grammar."""
 
     LEAD = auto()
+    DENIAL = auto()
     NOUN = auto()
     AFFORDANCE = auto()
     RELATION = auto()
@@ -140,6 +141,7 @@ def _table() -> tuple[dict[tuple[str, ...], Token], int]:
         (Kind.ATTRIBUTE, words.attributes().items()),
         (Kind.AFFORDANCE, ((phrase, item) for item in affordances().values() for phrase in item.phrases)),
         (Kind.LEAD, ((phrase, None) for phrase in words.LEADS)),
+        (Kind.DENIAL, ((phrase, None) for phrase in words.DENIALS)),
         (Kind.CLOSER, ((phrase, None) for phrase in words.CLOSERS)),
         (Kind.BREAK, (((word,), None) for word in ("but", "then", "while"))),
         (Kind.AND, (((word,), None) for word in ("and", "nor"))),

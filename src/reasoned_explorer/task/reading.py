@@ -12,15 +12,20 @@ from dataclasses import replace
 
 from reasoned_explorer.model import Fault, GoalError
 from reasoned_explorer.task import words
+from reasoned_explorer.task.contradictions import contradictions
 from reasoned_explorer.task.goal_spec import PASS_GRADE, AttributeTest, Condition, GoalSpec, Relation, Sought
 from reasoned_explorer.task.grades import Affordance
 from reasoned_explorer.task.lexer import Kind, Token, known_words, tokens_of
+from reasoned_explorer.task.loose_ends import SOUGHT, Denial, hanging, missing
 from reasoned_explorer.world.taxonomy import OBJECT_CLASSES, Ground
 
 _MAX_LENGTH = 300
 _RELATIONS_HELP = "near, by, under, on, in, away from, within … m of"
-# Relations that may end in nothing ("to sit on") or in what cannot be graded ("with armrests").
+# Relations that may end in what cannot be graded ("with armrests").
 _LOOSE = frozenset({"with", "that has"})
+_LACKING = frozenset({"without", "with no"})
+# Path phrases that need no ground: "a bench that I can use".
+_USES = frozenset({"use", "using", "take", "taking", "only"})
 
 
 def read_goal(text: str) -> GoalSpec:
@@ -32,7 +37,7 @@ def read_goal(text: str) -> GoalSpec:
     Raises:
         GoalError: With everything that is wrong: the sentence is empty or too long, it asks for nothing that the judge
             knows (with the near misses), for several things at once, for a relation or a ground that the judge does
-            not know, or for what contradicts itself.
+            not know, for what contradicts itself or is not to be found, or a part of it is missing ("a bench near").
     """
     subject = f"goal {text!r:.80}"
     if not isinstance(text, str):
@@ -45,9 +50,10 @@ def read_goal(text: str) -> GoalSpec:
     reader.read()
     faults = reader.faults
     both = sorted(reader.wanted & reader.shunned)
-    if both and not reader.exceptions:
+    if both and (not reader.exceptions or reader.named <= reader.shunned):
         names = ", ".join(ground.noun for ground in both)
         faults.append(Fault(f"{names} is both to be kept to and to be avoided", "one of the two"))
+    faults += contradictions(reader.conditions, reader.attributes)
     rows, level = reader.rows()
     if not rows and not faults:
         faults.append(_nothing(reader.unread))
@@ -95,6 +101,10 @@ class _Reader:
         self._alternatives: list[Affordance] = []
         self.conditions: list[Condition] = []
         self.attributes: list[AttributeTest] = []
+        self._denial = Denial()
+        self._closes = False
+        #: Grounds to stay on as they were named; `wanted` takes in what people mean, too.
+        self.named: set[Ground] = set()
         self.wanted: set[Ground] = set()
         self.shunned: set[Ground] = set()
         self.exceptions = False
@@ -115,6 +125,8 @@ class _Reader:
         while self._at < len(self._tokens):
             token = self._tokens[self._at]
             self._at += 1
+            if self._is_denied(token):
+                continue
             if token.kind in handlers:
                 handlers[token.kind](token)
             elif token.kind in {Kind.AND, Kind.OR, Kind.LEAD}:
@@ -124,6 +136,27 @@ class _Reader:
                 self._joint = token.kind
             if token.kind not in {Kind.SMALL, Kind.WORD}:
                 self._last = token.kind
+        open_word = self._denial.text or hanging(self._tokens)
+        if open_word and self._is_late():
+            self._missing(open_word)
+
+    def _is_denied(self, token: Token) -> bool:
+        """Follow a denial to what it denies; return whether the token is done with: that is what is sought."""
+        if token.kind is Kind.DENIAL:
+            self._denial.begin(token.text, self._at)
+            return True
+        between = [item.text for item in self._tokens[self._denial.at : self._at]]
+        fault = self._denial.meet(token, between, is_late=self._is_late())
+        if fault is not None:
+            self.faults.append(fault)
+        return fault is not None and token.kind in SOUGHT
+
+    def _is_late(self) -> bool:
+        """Return whether what is sought has been said."""
+        return bool(self.nouns or self.affordance)
+
+    def _missing(self, text: str) -> None:
+        self.faults.append(missing(text))
 
     def rows(self) -> tuple[tuple[Sought, ...], int]:
         """Return the ways to satisfy the goal, and its level."""
@@ -155,13 +188,13 @@ class _Reader:
 
     def _quality(self, token: Token) -> None:
         condition: Condition = token.value
-        # "not in the shade", "not quiet"
-        if self._at >= 2 and self._tokens[self._at - 2].text == "not":
+        if self._denial.take():  # "not in the shade", "not very quiet"
             condition = replace(condition, negated=not condition.negated)
         self.conditions.append(condition)
 
     def _attribute(self, token: Token) -> None:
-        self.attributes.append(token.value)
+        test: AttributeTest = token.value
+        self.attributes.append(replace(test, negated=not test.negated) if self._denial.take() else test)
 
     def _do(self, token: Token) -> None:
         item: Affordance = token.value
@@ -221,6 +254,7 @@ class _Reader:
 
     def _relation(self, token: Token) -> None:
         relation, negated, distance_m = token.value
+        negated = negated != self._denial.take()
         listed = self._listed()
         if not listed:
             self._dangling(token)
@@ -228,12 +262,29 @@ class _Reader:
         if not 0.0 < distance_m <= 100.0:
             self.faults.append(Fault(f"{token.text!r}", "a distance above 0 and up to 100 m"))
             return
+        self._closes = token.text in _LOOSE | _LACKING
+        others = {"other", "others", "another", "second"} & {t.text for t in self._tokens[: self._at]}
+        if token.text in _LACKING and not others and not self._closed():
+            self._check_lack(token, [noun for alternatives in listed for noun in alternatives])
         for alternatives in listed:
             self._condition(
                 token, Condition(relation, buildings=True, distance_m=distance_m, negated=negated), alternatives
             )
         self._joint = None
         self._since_head.clear()
+
+    def _closed(self) -> bool:
+        """Return whether the relation that was read is closed by another one: "without a bench nearby"."""
+        following = self._peek()
+        return following is not None and (following.kind is Kind.CLOSER or following.text in words.CLOSING)
+
+    def _check_lack(self, token: Token, lacking: Sequence[words.Noun]) -> None:
+        """Refuse "a bench without a bench"."""
+        sought = {name for noun in self.nouns for name in noun.classes}
+        lacked = {name for noun in lacking for name in noun.classes}
+        if sought and sought <= lacked:
+            noun = OBJECT_CLASSES[min(sought)].noun
+            self.faults.append(Fault(f"it wants a {noun} and says {token.text!r} of the same", "one of the two"))
 
     def _condition(self, token: Token, frame: Condition, alternatives: Sequence[words.Noun]) -> None:
         """Add a condition: the relation of a frame to any of the nouns."""
@@ -253,15 +304,31 @@ class _Reader:
         start = self._at
         while start < len(self._tokens) and self._tokens[start].kind is Kind.SMALL:
             start += 1
-        following = self._tokens[start].text if start < len(self._tokens) else ""
-        ends = start >= len(self._tokens) or self._tokens[start].kind is not Kind.WORD
-        if ends or token.text in _LOOSE:
+        small = {item.text for item in self._tokens[self._at : start]}
+        kind = self._tokens[start].kind if start < len(self._tokens) else None
+        if kind is not Kind.WORD:
+            # "in a quiet place", "near me", "to sit on"
+            is_said = kind in {Kind.QUALITY, Kind.ATTRIBUTE, Kind.AFFORDANCE} or small & words.HERE_WORDS
+            if not is_said and not self._may_end(token):
+                self._missing(token.text)
             return
+        if token.text in _LOOSE:
+            return
+        following = self._tokens[start].text
         near = difflib.get_close_matches(following, known_words(), n=3, cutoff=0.75)
         hint = f"did you mean {' or '.join(near)}?" if near else ""
         self.faults.append(
             Fault(f"{token.text!r} what? {following!r} is not known", "a thing or a ground that is known", hint)
         )
+
+    def _may_end(self, token: Token) -> bool:
+        """Return whether a relation may be said without what it relates to."""
+        before = self._tokens[self._at - 2].kind if self._at >= 2 else None
+        if token.text in words.ADVERBS:
+            return True
+        if token.text in words.STRANDED and before in {Kind.AFFORDANCE, Kind.WORD}:
+            return self._is_late()
+        return token.text in words.CLOSING and self._closes and before is Kind.NOUN
 
     def _listed(self) -> list[list[words.Noun]]:
         """Read "a tree and a bench or a lamp" from here on: all of (any of)."""
@@ -309,6 +376,7 @@ class _Reader:
 
     def _path(self, token: Token) -> None:
         is_wanted, whatever_follows = token.value
+        is_wanted = is_wanted and not self._denial.take()  # "I don't want to walk on the grass"
         if token.text in words.relation_texts() and self._last in {
             Kind.NOUN,
             Kind.QUALITY,
@@ -324,6 +392,7 @@ class _Reader:
         if nouns and all(noun.grounds for noun in nouns):
             for noun in nouns:
                 if is_wanted:
+                    self.named.update(noun.grounds)
                     self.wanted.update(noun.wanted or noun.grounds)
                 else:
                     self.shunned.update(noun.grounds)
@@ -347,11 +416,28 @@ class _Reader:
         if not whatever_follows and (is_wanted or not nouns):
             if tuple(token.text.split()) in words.relations():
                 self._relation(Token(Kind.RELATION, token.text, words.relations()[tuple(token.text.split())]))
+            elif token.text in words.DENYING_PATHS:
+                self._denial.begin(token.text, self._at)
+            elif is_wanted and not nouns and token.text.split()[-1] not in _USES and self._at_end_of_clause():
+                self._missing(token.text)
+            return
+        if token.text in words.DENYING_PATHS:
+            named = " or ".join(OBJECT_CLASSES[name].noun for noun in nouns for name in noun.classes[:1])
+            what = f"it says what is not to be found: {token.text} … {named}"
+            self.faults.append(Fault(what, "what is to be found, or how it must stand to other things"))
+            self._skip_nouns()
             return
         following = " ".join(t.text for t in self._tokens[self._at : self._at + 4] if t.kind is not Kind.BREAK)
         grounds = ", ".join(ground.noun for ground in Ground if ground not in {Ground.UNKNOWN, Ground.BUILDING})
         what = f"{token.text!r} what? {following!r} is no ground" if following else f"{token.text!r} what?"
         self.faults.append(Fault(what, f"ground that the judge knows: {grounds}"))
-        # What was meant as ground must not be taken for what is sought.
+        self._skip_nouns()
+
+    def _at_end_of_clause(self) -> bool:
+        following = self._peek()
+        return following is None or following.kind is Kind.BREAK
+
+    def _skip_nouns(self) -> None:
+        """Step over what was meant as ground: it must not be taken for what is sought."""
         while self._at < len(self._tokens) and self._tokens[self._at].kind in {Kind.SMALL, Kind.WORD, Kind.NOUN}:
             self._at += 1

@@ -23,7 +23,9 @@ from reasoned_explorer.world.taxonomy import IMPASSABLE_ON_FOOT, Ground
 #: Goals that a blind declaration would satisfy more often than this are left out of splits.
 MAX_BLIND_RATE = 0.10
 _BLIND_PLACES = 300
-_LAST_RESORTS = (Ground.YARD, Ground.UNKNOWN)
+#: Starts keep this far from the edge of a world where there is such ground, metres: half of what can be seen from the
+#: very edge is nothing.
+EDGE_M = 25.0
 _ATTEMPTS = 60
 _DRAWS, _CELLS_A_DRAW = 20, 2000
 
@@ -64,12 +66,18 @@ class SamplingSettings:
 
 
 def free_places(
-    atlas: Atlas, *, traveller: Traveller, count: int, seed: int, forbidden: frozenset[Ground] = frozenset()
+    atlas: Atlas,
+    *,
+    traveller: Traveller,
+    count: int,
+    seed: int,
+    forbidden: frozenset[Ground] = frozenset(),
+    edge_m: float = 0.0,
 ) -> NDArray[np.float64]:
     """Return random places where a mission could begin: free for the traveller, outdoors, on walkable ground.
 
-    Yards, which are fenced in more often than not, and unknown ground are taken only where there is no other. Flyers
-    start over ground that one can walk on, too.
+    Unknown ground, and what is too near to the edge of the world, are taken only where there is no other. Flyers start
+    over ground that one can walk on, too.
 
     Args:
         atlas: The world.
@@ -77,6 +85,7 @@ def free_places(
         count: How many; fewer are returned only where there are no places at all.
         seed: Of the draw.
         forbidden: Ground that is none to start on.
+        edge_m: How far from the world's edge, metres.
 
     Returns:
         ENU metres, shape (n, 2).
@@ -87,19 +96,31 @@ def free_places(
     taken = np.empty(0, dtype=np.int64)
     for _ in range(_DRAWS):
         cells = bulk.integers(0, clearance.size, size=_CELLS_A_DRAW)
-        cells = cells[clearance[cells] > 0]
+        cells = _inside(atlas, grid, cells[clearance[cells] > 0], edge_m)
         taken = np.concatenate((taken, cells[_is_walkable(atlas, grid, cells, forbidden | {Ground.UNKNOWN})]))
         if taken.size >= count:
             break
     if taken.size < count:
         # Free ground is rare: look at every cell of it.
         everywhere = np.flatnonzero(clearance)
-        for refused in (forbidden | {Ground.UNKNOWN}, forbidden):
-            left = everywhere[_is_walkable(atlas, grid, everywhere, refused)]
+        inner = _inside(atlas, grid, everywhere, edge_m)
+        known = forbidden | {Ground.UNKNOWN}
+        for cells, refused in ((inner, known), (everywhere, known), (inner, forbidden), (everywhere, forbidden)):
+            left = cells[_is_walkable(atlas, grid, cells, refused)]
             if left.size:
                 taken = left[bulk.integers(0, left.size, size=count)]
                 break
     return np.stack(_middles(grid, taken[:count]), axis=1)
+
+
+def _inside(atlas: Atlas, grid: Grid, cells: NDArray[np.int64], edge_m: float) -> NDArray[np.int64]:
+    """Return the cells that are at least so far from the edge of the world."""
+    if edge_m <= 0.0:
+        return cells
+    bounds, (x_m, y_m) = atlas.world.bounds, _middles(grid, cells)
+    inner_x = (x_m >= bounds.min_x_m + edge_m) & (x_m <= bounds.max_x_m - edge_m)
+    inner_y = (y_m >= bounds.min_y_m + edge_m) & (y_m <= bounds.max_y_m - edge_m)
+    return cells[inner_x & inner_y]
 
 
 def _is_walkable(atlas: Atlas, grid: Grid, cells: NDArray[np.int64], refused: frozenset[Ground]) -> NDArray[np.bool_]:
@@ -124,8 +145,8 @@ def sample_start(
 ) -> tuple[Pose, float]:
     """Return a random start for a goal, and the length of the reference way from it, metres.
 
-    It is free, outdoors, on ground that one can walk on and that the goal allows; the way from it to success is within
-    the settings' range. It faces anywhere.
+    It is free, outdoors, on ground that one can walk on and that the goal allows, and not at the edge of the world
+    (`EDGE_M`); the way from it to success is within the settings' range. It faces anywhere.
 
     Raises:
         StartError: If none is found, with the reason.
@@ -135,7 +156,9 @@ def sample_start(
     if not judge.targets:
         what = f"nothing in {atlas.world.name!r} satisfies {spec.text!r}"
         raise StartError("start", [Fault(what, "a goal that something satisfies", "take another goal or world")])
-    places = free_places(atlas, traveller=traveller, count=_ATTEMPTS, seed=seed, forbidden=spec.forbidden)
+    places = free_places(
+        atlas, traveller=traveller, count=_ATTEMPTS, seed=seed, forbidden=spec.forbidden, edge_m=EDGE_M
+    )
     if not len(places):
         what = f"{atlas.world.name!r} has no place to start"
         raise StartError("start", [Fault(what, "free ground outdoors that the goal allows")])

@@ -416,6 +416,24 @@ STRANGE_WORDS = _words(
     "behind across opposite between beyond past side left north south east west above over through view after before "
     "towards toward"
 )
+#: Denials: what is sought, found or wished for behind one of them is not what is asked for.
+DENIALS = tuple(
+    _phrases("don't, dont, do not, anything but, everything but, except, except for, excluding, other than")
+)
+#: Denials that are path phrases where ground follows.
+DENYING_PATHS = frozenset({"not", "never", "no", "but not", "and not", "rather than", "instead of"})
+#: After these a denial is of something else: "I don't know where the bench is".
+QUESTION_WORDS = _words("where how what who which when")
+#: Where one is: "near me" narrows nothing.
+HERE_WORDS = _words("me us here there it him her them you")
+#: Relations that may be said without what they relate to: "is there a bench around?"
+ADVERBS = _words("around along outside")
+#: Relations that may end a wish: "something to sit on".
+STRANDED = _words("on in at by with under inside within upon")
+#: Relations that may close another one: "a bench with a tree near".
+CLOSING = frozenset({"near", "close by", "beside", "alongside"})
+#: Words that ask for more, and are no relation of the judge's.
+HANGING = STRANGE_WORDS - _words("left side north south east west view") | _words("of from for to into onto via")
 #: Phrases that only close a relation that was said already ("with a tree next to it").
 CLOSERS = tuple(
     _phrases(

@@ -7,10 +7,13 @@ things are permuted in place by that seed (`reasoned_explorer.world.permuted`).
 """
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
-from reasoned_explorer.model import Fault, UnknownNameError, WorldError
+from reasoned_explorer.model import Fault, Gathering, SettingsError, UnknownNameError, WorldError
+from reasoned_explorer.model.checks import kind_faults, seed_faults
 from reasoned_explorer.registry import Registry
+from reasoned_explorer.world.rounding import rounded
 from reasoned_explorer.world.world import World
 
 WORLDS = Registry("world", "worlds", ())
@@ -42,46 +45,95 @@ def open_world(
         UnknownNameError: If there is no such district or registered world.
         SettingsError: If seed or size are out of range.
     """
+    return _maker_of(spec, seed=seed, size_m=size_m, bbox=bbox)()
+
+
+def check_world_name(
+    spec: str,
+    *,
+    seed: int = 0,
+    size_m: float = DEFAULT_SIZE_M,
+    bbox: tuple[float, float, float, float] | None = None,
+) -> None:
+    """Check all that can be known of a world before it is made or read: name, numbers, whether there is such a file.
+
+    Raises:
+        InputError: As `open_world`.
+    """
+    _maker_of(spec, seed=seed, size_m=size_m, bbox=bbox)
+
+
+def _maker_of(
+    spec: str, *, seed: int, size_m: float, bbox: tuple[float, float, float, float] | None
+) -> Callable[[], World]:
+    """Return what makes a world, once all is checked that costs nothing."""
+    if faults := kind_faults("the name", spec, str, "text such as park:7 or town.osm.pbf"):
+        raise WorldError("world", faults)
+    if faults := seed_faults(seed):
+        raise SettingsError("world", faults)
     permuted = _PERMUTED.fullmatch(spec)
     if permuted is not None:
-        from reasoned_explorer.world.permuted import permute_labels
-
-        inner = open_world(permuted["spec"], seed=seed, size_m=size_m, bbox=bbox)
-        return permute_labels(inner, seed=int(permuted["seed"]))
+        make = _maker_of(permuted["spec"], seed=seed, size_m=size_m, bbox=bbox)
+        return lambda: _permuted(make(), int(permuted["seed"]))
     lowered = spec.lower()
     if lowered.endswith(KEPT_SUFFIX) or lowered.endswith(_OSM_SUFFIXES) or "/" in spec:
-        return _open_file(Path(spec), seed=seed, bbox=bbox)
+        return _reader_of(Path(spec), seed=seed, bbox=bbox)
     match = _NAME.fullmatch(spec)
     if match is None:
         expected = "a district like park:7@400, or a file that ends in .osm, .osm.pbf or .rexworld"
         raise WorldError("world", [Fault(f"{spec!r} is neither a name nor a file", expected)])
+    found = Gathering()
     if bbox is not None:
-        raise WorldError("world", [Fault(f"a bounding box for {spec!r}", "one only for OpenStreetMap files")])
+        found.add(_no_bbox(spec))
     given_seed = int(match["seed"]) if match["seed"] else seed
     given_size_m = float(match["size"]) if match["size"] else size_m
-    return _make(match["name"], given_seed, given_size_m)
+    make = found.take(lambda: _generator_of(match["name"], given_seed, given_size_m), _nothing)
+    found.finish("world")
+    return make
 
 
-def _open_file(path: Path, *, seed: int, bbox: tuple[float, float, float, float] | None) -> World:
+def _nothing() -> World:
+    raise AssertionError  # stands for what was refused; the refusal is raised
+
+
+def _no_bbox(spec: str) -> WorldError:
+    return WorldError("world", [Fault(f"a bounding box for {spec!r}", "one only for OpenStreetMap files")])
+
+
+def _permuted(world: World, seed: int) -> World:
+    from reasoned_explorer.world.permuted import permute_labels
+
+    return rounded(permute_labels(world, seed=seed))
+
+
+def _reader_of(path: Path, *, seed: int, bbox: tuple[float, float, float, float] | None) -> Callable[[], World]:
     if path.name.lower().endswith(KEPT_SUFFIX):
         from reasoned_explorer.world.files import load_world
 
         if bbox is not None:
-            raise WorldError("world", [Fault(f"a bounding box for {path}", "one only for OpenStreetMap files")])
-        return load_world(path)
-    from reasoned_explorer.world.osm.importer import import_osm
+            raise _no_bbox(str(path))
+        if not path.is_file():
+            load_world(path)  # says why it cannot
+        return lambda: load_world(path)
+    from reasoned_explorer.world.osm.importer import check_source, import_osm
 
-    return import_osm(path, bbox=bbox, seed=seed)
+    check_source(path, bbox=bbox)
+    return lambda: import_osm(path, bbox=bbox, seed=seed)
 
 
-def _make(name: str, seed: int, size_m: float) -> World:
-    from reasoned_explorer.world.generator import DISTRICTS, generate_world
+def _generator_of(name: str, seed: int, size_m: float) -> Callable[[], World]:
+    from reasoned_explorer.world.generator import DISTRICTS, check_request, generate_world
 
     if name in DISTRICTS:
-        return generate_world(name, seed=seed, size_m=size_m)
+        check_request(name, seed=seed, size_m=size_m)
+        return lambda: generate_world(name, seed=seed, size_m=size_m)
     if name not in WORLDS.names():
         raise UnknownNameError("world", name, [*DISTRICTS, *WORLDS.names()])
+    return lambda: _registered(name, seed, size_m)
+
+
+def _registered(name: str, seed: int, size_m: float) -> World:
     world = WORLDS.load(name)(seed=seed, size_m=size_m)
     if not isinstance(world, World):
         raise WorldError(f"world {name}", [Fault(f"its factory returned {type(world).__name__}", "a World")])
-    return world
+    return rounded(world)

@@ -56,6 +56,18 @@ def test_everything_that_is_wrong_is_told_at_once(small_plan: BenchPlan) -> None
         assert word in text
 
 
+def test_the_settings_of_a_method_and_the_numbers_of_the_base_are_checked(small_plan: BenchPlan) -> None:
+    with pytest.raises(SettingsError) as raised:
+        replace(
+            small_plan,
+            methods=("llm-rrt:depth=-1", "llm-rrt@nobody/embedded", "llm-as-eval:depth=1"),
+            base=MissionSettings(success_radius_m=0.0),
+        )
+    text = str(raised.value)
+    for word in ("depth is -1", "nobody", "no setting 'depth'", "success_radius_m is 0"):
+        assert text.count(word) == 1
+
+
 @pytest.mark.parametrize("data", [{}, {"version": 99}, {"version": 1, "split": None}])
 def test_what_is_no_plan_is_refused(data: dict[str, object]) -> None:
     with pytest.raises(InputError):

@@ -5,8 +5,10 @@ from urllib.parse import parse_qs
 
 import pytest
 
+from reasoned_explorer.evaluation.metrics import aggregate, compare
 from reasoned_explorer.evaluation.report.causes import Cause
 from reasoned_explorer.evaluation.report.curves import casr_curves, observations, relations
+from reasoned_explorer.evaluation.report.links import link
 from reasoned_explorer.evaluation.report.results import (
     causes_table,
     cities_table,
@@ -16,9 +18,8 @@ from reasoned_explorer.evaluation.report.results import (
     overall_table,
     paper_tables,
 )
-from reasoned_explorer.evaluation.report.scores import aggregate, compare
 from reasoned_explorer.evaluation.report.study import Study
-from reasoned_explorer.evaluation.report.wording import amount, link, money, share, signed
+from reasoned_explorer.evaluation.wording import amount, money, share, signed
 from reasoned_explorer.model import InputError
 from tests.evaluation.report.rows import ABOUT, METHODS, made_row, many_rows
 
@@ -29,7 +30,7 @@ def study() -> Study:
 
 
 def test_figures_are_those_of_the_metrics(study: Study) -> None:
-    expected = aggregate(study.scores("llm-as-eval"))
+    expected = aggregate(study.scores("llm-as-eval"), places=study.place_of)
     records = [record for record in overall_table(study).records if record[0] == "llm-as-eval"]
     written = {record[2]: record[3:6] for record in records}
     for name in ("SR", "OSR", "SPL", "CASR", "CASR per mission", "CASR paper-style", "CT", "TT"):
@@ -48,10 +49,13 @@ def test_methods_stand_in_the_order_that_was_asked_for(study: Study) -> None:
 
 
 def test_differences_are_paired_and_taken_from_the_first_method(study: Study) -> None:
-    expected = compare(study.scores("oracle"), study.scores("llm-rrt"))["CASR"]
+    expected = compare(study.scores("oracle"), study.scores("llm-rrt"), places=study.place_of)["CASR"]
     table = differences_table(study)
     assert table is not None
-    assert ("oracle", "llm-rrt", "CASR", expected.value, expected.low, expected.high, 24, "bootstrap") in table.records
+    record = next(record for record in table.records if record[0] == "oracle" and record[2] == "CASR")
+    figures = (expected.value, expected.low, expected.high, 24, "clustered bootstrap", expected.p)
+    assert record == ("oracle", "llm-rrt", "CASR", *figures, record[-1])
+    assert record[-1] >= expected.p, "corrected for four comparisons"
 
 
 def test_methods_with_other_missions_are_compared_on_those_that_both_have() -> None:

@@ -106,4 +106,4 @@ def test_the_page_shows_it_and_leads_to_both_missions(kept: Kept, tmp_path: Path
 def test_without_records_the_page_says_so(kept: Kept, tmp_path: Path) -> None:
     rows = [made_row(method, 1) for method in PAIR]
     page = write_report(rows, ABOUT, tmp_path / "report", traces=kept).read_text(encoding="utf-8")
-    assert "There is no mission with the records of both methods." in page
+    assert "No mission has the records of both methods and its world." in page

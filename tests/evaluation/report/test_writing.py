@@ -13,7 +13,7 @@ from reasoned_explorer.evaluation.report import write_report, writing
 from reasoned_explorer.evaluation.report.missions import missions_json
 from reasoned_explorer.evaluation.report.study import Study
 from reasoned_explorer.evaluation.row import MissionRow
-from reasoned_explorer.model import InputError, RecordError
+from reasoned_explorer.model import InputError, PartError, RecordError
 from tests.evaluation.report.rows import ABOUT, METHODS, made_row, many_rows
 
 EVIL = "<script>alert(1)</script>\"'&</style></table><!-- \u2028 {{ about.title }}"
@@ -118,7 +118,7 @@ def test_a_report_that_cannot_be_written_leaves_the_old_one(tmp_path: Path, monk
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(writing.os, "fsync", full)
-    with pytest.raises(RecordError, match="No space left"):
+    with pytest.raises(PartError, match="No space left on device; make room"):
         write_report(many_rows(4, ("llm-as-eval",)), ABOUT, target)
     assert contents(target) == before
     assert [path.name for path in tmp_path.iterdir()] == ["report"]

@@ -8,17 +8,14 @@ import hashlib
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 from reasoned_explorer.evaluation.methods import Method, method
-from reasoned_explorer.evaluation.mission import CLOCKS, MissionSettings
+from reasoned_explorer.evaluation.mission_settings import MissionSettings, errors_of
 from reasoned_explorer.exploration.settings import ExplorerSettings
-from reasoned_explorer.minds.latency import latency_profile
-from reasoned_explorer.minds.registry import MINDS
-from reasoned_explorer.model import Fault, InputError, SettingsError, UnknownNameError
+from reasoned_explorer.model import Fault, Gathering, InputError, SettingsError
 from reasoned_explorer.model.draws import key_of
-from reasoned_explorer.perception.registry import CAPTIONERS
 from reasoned_explorer.task.split import Split, SplitEpisode
 from reasoned_explorer.vehicles.registry import vehicle_profile
 
@@ -76,20 +73,20 @@ class BenchPlan:
         Raises:
             InputError: With everything that is wrong.
         """
-        faults: list[Fault] = []
-        checks: list[Any] = [lambda name=name: method(name) for name in self.methods]
-        checks += [lambda name=name: vehicle_profile(name) for name in self.vehicles]
-        names = {self.base.minds, self.base.visionary, self.base.evaluator, self.base.checker} - {None}
-        checks += [lambda name=name: MINDS.load(name) for name in sorted(str(name) for name in names)]
-        checks.append(lambda: CAPTIONERS.load(self.base.captioner))
-        checks.append(lambda: latency_profile(self.base.latency))
-        for check in checks:
-            try:
-                check()
-            except InputError as error:
-                faults += error.faults
-        if self.base.clock not in CLOCKS:
-            faults += UnknownNameError("clock", self.base.clock, tuple(CLOCKS)).faults
+        found = Gathering()
+        for vehicle in self.vehicles:
+            found.check(partial(vehicle_profile, vehicle))
+        # Of the base, what the methods and the plan decide does not count.
+        own = MissionSettings()
+        plain = replace(
+            self.base, planner=own.planner, planner_settings={}, vehicle=own.vehicle, seed=own.seed, agent=own.agent
+        )
+        found.add(*errors_of(plain))
+        for name in self.methods:
+            chosen = found.take(partial(method, name), None)
+            if chosen is not None:
+                found.add(*errors_of(chosen.settings(plain)))
+        faults = found.faults
         seeds = tuple(str(seed) for seed in self.seeds)
         for what, listed in (("planners", self.methods), ("vehicles", self.vehicles), ("seeds", seeds)):
             if not listed or len(set(listed)) < len(listed):

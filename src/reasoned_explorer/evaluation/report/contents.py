@@ -27,6 +27,7 @@ from reasoned_explorer.evaluation.report.results import (
     collisions_table,
     differences_table,
     every_level_table,
+    headroom_table,
     levels_table,
     overall_table,
 )
@@ -75,7 +76,9 @@ def _differences(study: Study, looks: dict[str, Look]) -> Section:
     table, chart = differences_table(study), differences_chart(study, looks)
     if table is None or chart is None:
         return Section("differences", "Differences", texts=("There is nothing to compare: the run has one method.",))
-    return Section("differences", "Differences", charts=(chart,), tables=(table,))
+    headroom = headroom_table(study)
+    tables = (table,) if headroom is None else (table, headroom)
+    return Section("differences", "Differences", charts=(chart,), tables=tables)
 
 
 def _over_time(study: Study, looks: dict[str, Look]) -> tuple[Section, Section]:
@@ -118,7 +121,7 @@ def _trajectories(study: Study, traces: TraceSource | None) -> Section:
         return Section("trajectories", title, texts=("The run kept no records, so that no trajectories can be shown.",))
     drawn = tuple(pictures(study, traces))
     if not drawn:
-        return Section("trajectories", title, texts=("There is no mission with the records of both methods.",))
+        return Section("trajectories", title, texts=("No mission has the records of both methods and its world.",))
     return Section("trajectories", title, pictures=drawn)
 
 

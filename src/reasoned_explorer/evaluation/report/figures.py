@@ -5,13 +5,13 @@ from functools import partial
 
 from matplotlib.axes import Axes
 
+from reasoned_explorer.evaluation.metrics import Metric
 from reasoned_explorer.evaluation.report.charts import Chart, Panel
 from reasoned_explorer.evaluation.report.curves import Curve
 from reasoned_explorer.evaluation.report.looks import CAUSE_LOOKS, INKS, Look
 from reasoned_explorer.evaluation.report.results import collisions_of
-from reasoned_explorer.evaluation.report.scores import Metric
 from reasoned_explorer.evaluation.report.study import Study
-from reasoned_explorer.evaluation.report.wording import amount, level_name, share
+from reasoned_explorer.evaluation.wording import amount, level_name, share
 from reasoned_explorer.world.drawing_style import printable, shortened
 
 _INK, _SOFT, _GHOST, _PAPER = (INKS[name][0] for name in ("ink", "soft", "ghost", "paper"))

@@ -13,12 +13,12 @@ from markupsafe import Markup
 from reasoned_explorer.evaluation.paper import PAPER_NOTE, PAPER_SOURCE
 from reasoned_explorer.evaluation.report.charts import Chart, svg_panels
 from reasoned_explorer.evaluation.report.curves import Observation, limit_text
+from reasoned_explorer.evaluation.report.links import link
 from reasoned_explorer.evaluation.report.looks import HUES, INKS, Look
 from reasoned_explorer.evaluation.report.missions import missions_json
 from reasoned_explorer.evaluation.report.study import Study
 from reasoned_explorer.evaluation.report.tables import Table
 from reasoned_explorer.evaluation.report.trajectories import Picture
-from reasoned_explorer.evaluation.report.wording import link
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -7,6 +7,7 @@ from enum import StrEnum
 from functools import lru_cache, partial
 
 from reasoned_explorer.minds.embedded.affordances import affordances_in, cues_in, plain
+from reasoned_explorer.minds.embedded.goal_sense import Denied, breaks_off, is_not_sought, takes_back
 from reasoned_explorer.minds.embedded.goal_words import (
     ADJECTIVE_TAIL,
     CLAUSE_STARTS,
@@ -108,7 +109,7 @@ def parse_goal(text: str) -> ParsedGoal:
     """Return what a goal sentence means.
 
     Raises:
-        GoalError: If it is empty, too long, or asks for nothing that can be found.
+        GoalError: If it is empty, too long, breaks off, takes back what it says, or asks for nothing that can be found.
     """
     if not text.strip():
         raise GoalError("goal", [Fault("the goal is empty", _EXPECTED)])
@@ -116,6 +117,17 @@ def parse_goal(text: str) -> ParsedGoal:
         what = f"the goal has {len(text)} characters"
         raise GoalError("goal", [Fault(what, f"one sentence of at most {MAX_GOAL_CHARACTERS} characters")])
     return _Parser(text).parse()
+
+
+def _name(phrase: Phrase) -> str:
+    return phrase.concept or phrase.words
+
+
+def _denied_relation(said: str) -> str:
+    """Return the relation that words like "not under" deny."""
+    if re.search(r"\bnot (?:\w+ )?under\b", said):
+        return "under"
+    return "near" if re.search(r"\b(?:away from|far from|not (?:\w+ )?(?:near|close to|next to))\b", said) else "with"
 
 
 def _normalised(text: str) -> str:
@@ -126,8 +138,7 @@ def _normalised(text: str) -> str:
     text = re.sub(r"\s+(?:-|–|—)+\s+", " , ", text)
     text = re.sub(r"[^\w\s,'&-]", " ", text)
     text = re.sub(r"\s*,[\s,]*", " , ", text)
-    text = re.sub(r"\s+", " ", text).strip(" ,")
-    return CLAUSE_STARTS.sub(" , ", text)
+    return re.sub(r"\s+", " ", text).strip(" ,")
 
 
 class _Parser:
@@ -140,16 +151,25 @@ class _Parser:
         self._near: list[NearClause] = []
         self._excluded: list[Phrase] = []
         self._absent: list[Phrase] = []
+        self._denied: list[Denied] = []
 
     def parse(self) -> ParsedGoal:
-        clauses = [clause.strip() for clause in _normalised(self._text).split(" , ") if clause.strip()]
+        whole = _normalised(self._text)
+        clauses = [clause.strip() for clause in CLAUSE_STARTS.sub(" , ", whole).split(" , ") if clause.strip()]
         rest = " , ".join(clause for clause in map(self._without_ground, clauses) if clause)
+        denial = is_not_sought(rest) or is_not_sought(whole)
+        faults = [denial] if denial is not None else list(breaks_off(HERE.sub(" ", f" {whole} ").strip()))
+        if faults:
+            raise GoalError("goal", faults)
         rest = HERE.sub(" ", f" {rest} ").strip()
         rest = NEGATION_PATTERN.sub(self._take_negation, f" {rest} ").strip(" ,")
         frame, sought_text = _unframed(rest)
         sought, affordances, activity = self._sought(sought_text, frame)
         if not sought and not affordances and not activity:
             raise GoalError("goal", [Fault(f"{self._text!r} asks for nothing that can be found", self._expected())])
+        faults = self._contradictions(sought)
+        if faults:
+            raise GoalError("goal", faults)
         kind = GoalKind.AFFORDANCE if not sought else GoalKind.OBJECT
         if sought and all(phrase.concept in _place_concepts() for phrase in sought):
             kind = GoalKind.PLACE
@@ -170,6 +190,14 @@ class _Parser:
         if self._wanted or self._shunned or self._near or self._excluded or self._absent:
             return f"what is to be found beside the conditions, {_EXPECTED}"
         return _EXPECTED
+
+    def _contradictions(self, sought: tuple[Phrase, ...]) -> list[Fault]:
+        near = [(clause.relation, _name(clause.target)) for clause in self._near if not clause.target.adjectives]
+        faults = list(takes_back([_name(phrase) for phrase in sought], near, self._denied, text=self._text))
+        if self._wanted and self._wanted <= self._shunned:
+            names = ", ".join(sorted(self._wanted)).lower()
+            faults.append(Fault(f"{names} is both to be kept to and to be avoided", "one of the two"))
+        return faults
 
     # Conditions
 
@@ -194,6 +222,10 @@ class _Parser:
         phrases = _alternatives(match["what"])
         if not phrases:
             return " "
+        plain = tuple(_name(phrase) for phrase in phrases if not phrase.adjectives)
+        said = match.group().strip(" ,")
+        relation = "" if match["not_that"] else _denied_relation(said)
+        self._denied.append(Denied(said, plain, relation))
         if match["not_that"]:
             self._excluded += phrases
         else:

@@ -119,7 +119,8 @@ NEGATION_PATTERN = re.compile(
     r"rather than|instead of|anything but)(?= (?:a|an|the|any|one of)\s)|other than|except for|except|rather than|"
     r"instead of)|(?:that (?:has|have) |with |where there (?:is|are) |and |but )*(?:without|no|not any|free of|away "
     r"from|"
-    r"far from|far away from|with no|not near|not close to|not next to|not under|lacking)) (?:too many |many |any |"
+    r"far from|far away from|with no|not (?:right |directly |too |very )?(?:near|close to|next to|under)|lacking)) "
+    r"(?:too many |many |any |"
     r"other )?"
     r"(?P<what>(?:(?! that | which | where | near | under | to | , | with | and stay | but ).)+)"
 )
@@ -156,6 +157,19 @@ NEAR_PATTERN = re.compile(
     rf"(?P<relation>{_RELATIONS})(?=\s(?!foot\b|order\b|case\b|general\b|least\b|fact\b|time\b|my\b|the way\b|peace\b|"
     r"the shade\b(?! of)|the sun\b|the rain\b|a hurry\b|public\b|a hot\b|a rainy\b|the open\b|total\b|sale\b|bike\b|"
     r"duty\b))"
+)
+#: "Do not find me …", "I do not want …", but not "I do not want to hurry".
+NOT_SOUGHT = re.compile(
+    r"(?:^|, )(?:(?:i|we|you|please|robot|drone|hey|but|and|now) )*(?:do not|never|not)(?: ever| please| just)* "
+    r"(?:find|locate|look for|search for|search|seek|show|give|fetch|reach|go to|navigate to|drive to|fly to|walk to|"
+    r"head to|head for|go and find|(?:take|bring|lead|guide|get) (?:me|us) (?:to|a|an|the|any)|"
+    r"(?:want|need|like|require)(?! to\b))\b|\b(?:anything|everything) but(?=\s)"
+)
+#: A word at the end of a clause that asks for more.
+HANGING = re.compile(
+    rf"(?:^|\s)(?P<word>{_RELATIONS}|avoid|avoiding|without|away from|far from|other than|rather than|instead of|"
+    r"except for|except|not|no|and|or|of|for|from|to|into|onto|across|between|beyond|over|above|through|towards|"
+    r"toward|after|before|than)(?:\s(?:a|an|the|some|any|my|our|your|this|that|its))*$"
 )
 #: Where the noun phrase ends and its purpose begins.
 PURPOSE = re.compile(

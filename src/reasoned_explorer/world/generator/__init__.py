@@ -3,17 +3,17 @@
 `generate_world` is all that is needed; what it uses is loaded when it is first called.
 """
 
-import math
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from reasoned_explorer.model.checks import is_within, seed_faults
 from reasoned_explorer.model.errors import Fault, SettingsError, UnknownNameError
 
 if TYPE_CHECKING:
     from reasoned_explorer.world.world import World
 
-__all__ = ["DISTRICTS", "SIZE_RANGE_M", "generate_world"]
+__all__ = ["DISTRICTS", "SIZE_RANGE_M", "check_request", "generate_world"]
 
 #: What can be generated, with one line for people.
 DISTRICTS: Mapping[str, str] = MappingProxyType(
@@ -46,21 +46,29 @@ def generate_world(district: str, *, seed: int = 0, size_m: float = 400.0) -> "W
         UnknownNameError: If only the district is wrong; it names the near misses.
         SettingsError: If the seed or the size is wrong, with all faults at once.
     """
+    check_request(district, seed=seed, size_m=size_m)
+    from reasoned_explorer.knowledge.cooccurrence import load_cooccurrence
+    from reasoned_explorer.world.generator.generate import build_world
+
+    return build_world(district, seed=seed, size_m=float(size_m), statistics=load_cooccurrence())
+
+
+def check_request(district: str, *, seed: int, size_m: float) -> None:
+    """Check that `generate_world` could make a world; it is not made.
+
+    Raises:
+        UnknownNameError: As `generate_world`.
+        SettingsError: Likewise.
+    """
     faults: list[Fault] = []
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        faults.append(Fault(f"seed {seed!r}", "a whole number from 0 on"))
+    faults += seed_faults(seed)
     low, high = SIZE_RANGE_M
-    numeric = isinstance(size_m, int | float) and not isinstance(size_m, bool)
-    if not numeric or not math.isfinite(size_m) or not low <= size_m <= high:
+    if not is_within(size_m, low, high):
         faults.append(Fault(f"size {size_m!r}", f"a length from {low:g} to {high:g} metres"))
-    if district not in DISTRICTS:
+    if not isinstance(district, str) or district not in DISTRICTS:
         unknown = UnknownNameError("district", str(district), tuple(DISTRICTS))
         if not faults:
             raise unknown
         faults = [*unknown.faults, *faults]
     if faults:
         raise SettingsError("generated world", faults)
-    from reasoned_explorer.knowledge.cooccurrence import load_cooccurrence
-    from reasoned_explorer.world.generator.generate import build_world
-
-    return build_world(district, seed=seed, size_m=float(size_m), statistics=load_cooccurrence())

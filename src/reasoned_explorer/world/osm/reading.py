@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from osmium.filter import EmptyTagFilter, TagFilter
 
 from reasoned_explorer.model import Fault, WorldError
+from reasoned_explorer.model.checks import is_there
 
 BoxDeg = tuple[float, float, float, float]
 _SUFFIXES = (".osm", ".osm.gz", ".osm.bz2", ".osm.pbf", ".pbf")
@@ -204,7 +205,7 @@ def read_extract(path: Path, *, box_deg: BoxDeg | None = None) -> Extract:
     Raises:
         WorldError: There is no such file, or it cannot be read as what its name says it is.
     """
-    _check_file(path)
+    check_file(path)
     try:
         with tempfile.TemporaryDirectory(prefix="reasoned-explorer-") as folder:
             return _read(path, box_deg, Path(folder))
@@ -213,8 +214,13 @@ def read_extract(path: Path, *, box_deg: BoxDeg | None = None) -> Extract:
         raise WorldError("OpenStreetMap file", [Fault(what, f"{_EXPECTED}, whole", _GET_ONE)]) from error
 
 
-def _check_file(path: Path) -> None:
-    if not path.exists():
+def check_file(path: Path) -> None:
+    """Check that there is a file that could be an OpenStreetMap file, by its name and size.
+
+    Raises:
+        WorldError: There is none.
+    """
+    if not is_there(path):
         fault = Fault(f"there is no file {path}", _EXPECTED, "check the path")
     elif path.is_dir():
         fault = Fault(f"{path} is a directory", _EXPECTED, "name the file in it")
