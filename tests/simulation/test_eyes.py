@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Camera, SettingsError
+from reasoned_explorer.simulation import eyes_kernels
 from reasoned_explorer.simulation.eyes import Eyes
 from reasoned_explorer.simulation.eyes_kernels import _window, see_objects
 from reasoned_explorer.world.raster import GroundRaster
@@ -203,3 +204,10 @@ def test_settings_out_of_range_are_refused_together():
     with pytest.raises(SettingsError) as error:
         eyes_on(max_range_m=math.nan, min_px=-1.0)
     assert len(error.value.faults) == 2
+
+
+@pytest.mark.parametrize(("x", "y", "heading"), [(90, 0, EAST), (-90, 0, -EAST), (0, 90, NORTH), (0, -90, SOUTH)])
+def test_who_looks_away_from_all_there_is_sees_nothing(x, y, heading, monkeypatch):
+    # As plain Python, which refuses what compiled code reads from beyond the grid.
+    monkeypatch.setattr(eyes_kernels, "see_objects", eyes_kernels.see_objects.py_func)
+    assert look(("bench", 0, 0), ("bench", 5, 5), x=x, y=y, heading=heading).sightings == ()

@@ -97,6 +97,8 @@ def see_objects(
     focal_px = 0.5 * width_px / math.tan(half_fov)
     columns = int(header[3])
     window = _window(header, x, y, heading, half_fov, range_m)
+    if window[0] > window[1]:  # the view looks past the grid: these columns are none
+        window[3] = window[2] - 1
     count = 0
     for j in range(window[2], window[3] + 1):
         count += seats.starts[j * columns + window[1] + 1] - seats.starts[j * columns + window[0]]
