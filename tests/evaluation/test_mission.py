@@ -13,7 +13,7 @@ from reasoned_explorer.evaluation.mission import (
     track_of,
     traveller_of,
 )
-from reasoned_explorer.evaluation.record_file import read_record
+from reasoned_explorer.evaluation.record_file import read_record, record_bytes
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import GoalError, RecordError, SettingsError, StartError, UnknownNameError
@@ -22,6 +22,7 @@ from reasoned_explorer.planning.without_models import NearestFrontier
 from reasoned_explorer.task.sampling import SamplingSettings, sample_episodes
 from reasoned_explorer.vehicles import PROFILES
 from reasoned_explorer.world.atlas import Atlas
+from reasoned_explorer.world.files import load_world, save_world
 from reasoned_explorer.world.generator import generate_world
 from reasoned_explorer.world.opening import open_world
 from tests.world.worlds import courtyard
@@ -69,6 +70,18 @@ def test_the_same_seed_gives_the_same_record_and_another_one_does_not(plaza: Atl
     first, again, other = (run_mission("Find me a tree", plaza, MissionSettings(seed=seed)) for seed in (5, 5, 6))
     assert first.record == again.record
     assert first.record.steps != other.record.steps
+
+
+@pytest.mark.parametrize("name", ["town:5@400", "waterfront:3@200"])
+def test_a_kept_world_gives_the_same_record_to_the_byte(name: str, tmp_path: Path) -> None:
+    world = open_world(name)
+    save_world(world, tmp_path / "kept.rexworld")
+    settings = MissionSettings(planner="nearest-frontier", explorer=ExplorerSettings(max_steps=40))
+    records = [
+        record_bytes(run_mission("Find me a fountain", each, settings).record)
+        for each in (world, load_world(tmp_path / "kept.rexworld"))
+    ]
+    assert records[0] == records[1]
 
 
 def test_the_record_is_written_as_it_happens_and_can_be_read(plaza: Atlas, tmp_path: Path) -> None:

@@ -32,7 +32,7 @@ from reasoned_explorer.evaluation.mission_signs import (
 )
 from reasoned_explorer.evaluation.mission_trace import FRONTIER_STATES
 from reasoned_explorer.geometry import Pose
-from reasoned_explorer.model.errors import RecordError
+from reasoned_explorer.model.errors import PartError, RecordError
 from reasoned_explorer.world.painting import Board
 from reasoned_explorer.world.sheet import WIDTH_PT, Sheet, plain_settings
 from reasoned_explorer.world.taxonomy import Ground
@@ -188,7 +188,7 @@ def test_a_full_disk_leaves_nothing_half_written(tmp_path: Path, monkeypatch: py
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(Path, "replace", full)
-    with pytest.raises(RecordError, match="No space left on device"):
+    with pytest.raises(PartError, match="No space left on device; make room"):
         draw_mission(park(), mission(), tmp_path / "mission.png", width_px=300)
     assert list(tmp_path.iterdir()) == []
 

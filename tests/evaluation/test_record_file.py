@@ -1,3 +1,4 @@
+import errno
 import os
 from dataclasses import replace
 from pathlib import Path
@@ -142,6 +143,76 @@ def test_a_full_disk_is_an_error_in_words(tmp_path: Path) -> None:
         writer._file = full
         with pytest.raises(RecordWriteError, match="No space left"):
             writer.header(HEADER)
+
+
+def _disk_that_fills(writer: RecordWriter, after: int) -> None:
+    """Have the disk take so many bytes more and then be full, in the middle of a line if need be."""
+    whole, room = writer._file, [after]
+
+    class Filling:
+        def write(self, data: memoryview) -> int:
+            if room[0] == 0:
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+            taken = whole.write(data[: room[0]])
+            room[0] -= taken
+            return taken
+
+        def __getattr__(self, name: str) -> object:
+            return getattr(whole, name)
+
+    writer._file = Filling()
+
+
+def _write_on_a_disk_with_room(folder: Path, *, for_header: int, for_steps: int) -> None:
+    """Write a header and three steps where so many bytes are left for the header, and then for the steps."""
+    with RecordWriter(folder) as writer:
+        whole = writer._file
+        _disk_that_fills(writer, for_header)
+        writer.header(HEADER)
+        writer._file = whole
+        _disk_that_fills(writer, for_steps)
+        for number in range(3):
+            writer.step(replace(STEP, step=number))
+
+
+@pytest.mark.parametrize("more", [0, 1, 100, 500])
+def test_a_disk_that_fills_leaves_whole_steps_only(tmp_path: Path, more: int) -> None:
+    one_step = len(_write(tmp_path / "whole").read_bytes().splitlines(keepends=True)[1])
+    with pytest.raises(RecordWriteError, match="make room"):
+        _write_on_a_disk_with_room(tmp_path / "run", for_header=10_000, for_steps=one_step + more)
+    data = (tmp_path / "run" / RECORD_NAME).read_bytes()
+    assert data.endswith(b"}\n")
+    assert data.count(b"\n") == 2
+    assert len(read_record(tmp_path / "run").steps) == 1
+
+
+def test_what_has_room_where_a_step_had_none_comes_right_behind_the_last_whole_step(tmp_path: Path) -> None:
+    with RecordWriter(tmp_path) as writer:
+        writer.header(HEADER)
+        writer.step(STEP)
+        whole = writer._file
+        _disk_that_fills(writer, 10)
+        with pytest.raises(RecordWriteError):
+            writer.step(replace(STEP, step=1))
+        writer._file = whole
+        writer.summary(SUMMARY)
+    record = read_record(tmp_path)
+    assert (len(record.steps), record.summary) == (1, SUMMARY)
+
+
+@pytest.mark.parametrize("room", [(0, 0), (100, 0), (10_000, 0), (10_000, 5)])
+def test_a_record_that_fails_before_its_first_whole_step_leaves_nothing(tmp_path: Path, room: tuple[int, int]) -> None:
+    with pytest.raises(RecordWriteError):
+        _write_on_a_disk_with_room(tmp_path / "runs" / "run", for_header=room[0], for_steps=room[1])
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_was_there_before_a_record_that_fails_stays(tmp_path: Path) -> None:
+    (tmp_path / "run").mkdir()
+    with pytest.raises(RecordWriteError):
+        _write_on_a_disk_with_room(tmp_path / "run", for_header=3, for_steps=0)
+    assert list(tmp_path.iterdir()) == [tmp_path / "run"]
+    assert list((tmp_path / "run").iterdir()) == []
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")

@@ -64,3 +64,20 @@ def test_parts_are_even():
     for column in columns:
         assert 0.0 <= min(column) <= max(column) < 1.0
         assert sum(column) / len(column) == pytest.approx(0.5, abs=0.02)
+
+
+@given(st.floats(0.0, 10.0))
+def test_more_errors_are_never_better(factor: float) -> None:
+    few, many = NOISY.times(factor), NOISY.times(factor + 0.5)
+    assert many.imagine_rate >= few.imagine_rate
+    assert many.notice_probability(20.0, "bench") <= few.notice_probability(20.0, "bench")
+    assert many.sign_rate <= few.sign_rate
+
+
+def test_errors_can_be_multiplied() -> None:
+    assert NOISY.times(1.0) == NOISY
+    assert NOISY.times(2.0).imagine_rate == pytest.approx(0.4)
+    assert NOISY.times(0.0).notice_probability(5.0, "bench") == 1.0
+    for factor in (-1.0, float("nan"), float("inf")):
+        with pytest.raises(SettingsError, match="0 or more"):
+            NOISY.times(factor)

@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Camera, SettingsError
+from reasoned_explorer.simulation import eyes_kernels
 from reasoned_explorer.simulation.eyes import Eyes
+from reasoned_explorer.simulation.eyes_kernels import _window, see_objects
 from reasoned_explorer.world.raster import GroundRaster
 from reasoned_explorer.world.sight import SightLines
 from reasoned_explorer.world.taxonomy import OBJECT_CLASSES, Ground
@@ -72,6 +74,32 @@ def test_farther_is_smaller(distance, times):
     near, far = (look(("kiosk", 0, d)).sightings[0] for d in (distance, times * distance))
     assert far.width_px < near.width_px
     assert far.height_px <= near.height_px
+
+
+@settings(deadline=None, max_examples=300)
+@given(st.floats(-500, 500), st.floats(-500, 500), st.floats(0, 6.28))
+def test_a_view_reaches_into_cells_of_the_grid_only(x, y, heading):
+    columns, rows = 3, 2
+    header = np.array([-20.0, -10.0, 12.0, columns, rows])
+    first_column, last_column, first_row, last_row = _window(header, x, y, heading, math.pi / 4, 60.0)
+    for row in range(first_row, last_row + 1):
+        assert 0 <= row < rows
+        assert 0 <= first_column <= last_column < columns
+
+
+@pytest.mark.parametrize("heading", np.linspace(0.0, 2.0 * math.pi, 8, endpoint=False))
+@pytest.mark.parametrize(("x", "y"), [(95, 0), (-95, 0), (0, 95), (0, -95), (95, 95), (-95, -95)])
+def test_looking_from_outside_of_all_that_stands_reads_nothing_that_is_not_there(x, y, heading, monkeypatch):
+    # As plain Python, where an index that is out of range is an error.
+    monkeypatch.setattr("reasoned_explorer.simulation.eyes_kernels.see_objects", see_objects.py_func)
+    view = look(("bench", -2, 0), ("bench", 2, 0), x=x, y=y, heading=heading, max_range_m=60.0)
+    assert view.sightings == ()
+
+
+def test_what_stands_alone_is_seen_from_afar():
+    for way in np.linspace(0.0, 2.0 * math.pi, 24, endpoint=False):
+        x, y = -40.0 * math.sin(way), -40.0 * math.cos(way)
+        assert [s.class_name for s in look(("kiosk", 0, 0), x=x, y=y, heading=way).sightings] == ["kiosk"]
 
 
 def test_sizes_stay_in_the_picture():
@@ -176,3 +204,10 @@ def test_settings_out_of_range_are_refused_together():
     with pytest.raises(SettingsError) as error:
         eyes_on(max_range_m=math.nan, min_px=-1.0)
     assert len(error.value.faults) == 2
+
+
+@pytest.mark.parametrize(("x", "y", "heading"), [(90, 0, EAST), (-90, 0, -EAST), (0, 90, NORTH), (0, -90, SOUTH)])
+def test_who_looks_away_from_all_there_is_sees_nothing(x, y, heading, monkeypatch):
+    # As plain Python, which refuses what compiled code reads from beyond the grid.
+    monkeypatch.setattr(eyes_kernels, "see_objects", eyes_kernels.see_objects.py_func)
+    assert look(("bench", 0, 0), ("bench", 5, 5), x=x, y=y, heading=heading).sightings == ()

@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from reasoned_explorer.model import InputError, SettingsError, StartError, WorldError
+from reasoned_explorer.model import InputError, SettingsError, StartError, UnknownNameError, WorldError
 from reasoned_explorer.task.split import BANDS_M, LEVELS, Place
 from reasoned_explorer.task.splitting import Dealing, generated_places, make_split, open_place, places_of_worlds
 
@@ -77,7 +77,7 @@ def test_a_neighbourhood_without_anything_deals_nothing() -> None:
 
 
 def test_what_cannot_be_made_is_refused() -> None:
-    with pytest.raises(SettingsError, match="one of mini, full"):
+    with pytest.raises(UnknownNameError, match="one of full, mini"):
         generated_places("huge")
     with pytest.raises(SettingsError, match="each world once"):
         places_of_worlds(["park:1@200", "park:1@200"])

@@ -12,7 +12,7 @@ from matplotlib import rcParams
 from matplotlib.path import Path as MarkPath
 from matplotlib.text import Text
 
-from reasoned_explorer.model.errors import WorldError
+from reasoned_explorer.model.errors import PartError, WorldError
 from reasoned_explorer.world.drawing import compose, draw_world, fitted_bounds, legend_entries
 from reasoned_explorer.world.drawing_style import FAMILY_COLOURS, Palette, mix, printable, set_in, width_pt, wrapped
 from reasoned_explorer.world.lettering import Room
@@ -221,7 +221,7 @@ def test_a_full_disk_leaves_the_old_picture_and_nothing_half_written(
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(Path, "replace", full)
-    with pytest.raises(WorldError, match="No space left on device"):
+    with pytest.raises(PartError, match="No space left on device; make room"):
         draw_world(empty(), target, width_px=300)
     assert target.read_bytes() == b"the old one"
     assert [file.name for file in tmp_path.iterdir()] == ["map.png"]

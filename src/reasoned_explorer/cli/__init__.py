@@ -7,6 +7,13 @@ def main() -> None:
     0: done (for a mission: found), 1: the mission ended without, 2: bad input, 3: a part failed, 130: stopped by a
     person.
     """
+    from reasoned_explorer.model.stopping import end_listening, listen
+
+    # From the very beginning: loading the commands takes a moment, too.
+    listen()
     from reasoned_explorer.cli.app import app
 
-    app()
+    try:
+        app()
+    finally:
+        end_listening()

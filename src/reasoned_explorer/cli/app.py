@@ -77,7 +77,7 @@ def run(
 ) -> None:
     """Run one mission: from a sentence to "Found Goal".
 
-    Exit code 0: found. 1: ended without. 2: bad input. 3: a part failed.
+    Exit code 0: found. 1: ended without. 2: bad input. 3: a part failed. 130: stopped with Ctrl-C.
     """
     from reasoned_explorer.cli.run import RunOptions, run_from_options
 

@@ -12,28 +12,31 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from reasoned_explorer.cli.answers import complain
-from reasoned_explorer.cli.parsing import parse_bbox
+from reasoned_explorer.cli.parsing import parse_bbox, parse_levels, parse_planners, parse_seeds
 from reasoned_explorer.cli.sheets import print_sheet
 from reasoned_explorer.evaluation.bench.export import export
-from reasoned_explorer.evaluation.bench.notes import notes_of
+from reasoned_explorer.evaluation.bench.notes import Notes, notes_of
 from reasoned_explorer.evaluation.bench.plan import BenchPlan
+from reasoned_explorer.evaluation.bench.ray_pool import require_ray
+from reasoned_explorer.evaluation.bench.results import Results
 from reasoned_explorer.evaluation.bench.runner import BenchProgress, Workers, run_bench, split_of
-from reasoned_explorer.evaluation.bench.store import RunStore
+from reasoned_explorer.evaluation.bench.store import NOTHING_FINISHED, RunStore
 from reasoned_explorer.evaluation.bench.tables import (
-    Results,
     Sheet,
     city_sheet,
     compared_sheet,
     difference_sheet,
+    headroom_sheet,
     main_sheet,
     more_sheet,
     paper_sheets,
+    vehicles_sheet,
 )
 from reasoned_explorer.evaluation.methods import methods
 from reasoned_explorer.evaluation.mission_settings import MissionSettings
 from reasoned_explorer.exploration.settings import ExplorerSettings
-from reasoned_explorer.model import Fault, InputError, SettingsError
-from reasoned_explorer.task.split import Split
+from reasoned_explorer.model import Fault, Gathering, InputError, SettingsError
+from reasoned_explorer.task.split import Place, Split
 from reasoned_explorer.task.splitting import Dealing, ceiling_casr, generated_places, places_of_worlds
 from reasoned_explorer.vehicles.registry import vehicle_profile
 
@@ -51,7 +54,7 @@ class BenchOptions:
     bbox: str | None = None
     per_cell: int | None = None
     split_seed: int | None = None
-    levels: tuple[int, ...] = ()
+    levels: str = ""
     seeds: str = "0"
     minds: str = "embedded"
     visionary: str | None = None
@@ -67,13 +70,20 @@ class BenchOptions:
     ray: str | None = None
     out: Path | None = None
     resume: Path | None = None
+    add: str = ""
     traces: bool = True
     quiet: bool = False
 
     @property
     def who(self) -> Workers:
-        """Who runs the missions: as many processes as this process may use processors, unless told otherwise."""
-        return Workers(self.workers or len(os.sched_getaffinity(0)), self.ray)
+        """Who runs the missions: as many processes as this process may use processors, unless told otherwise.
+
+        Raises:
+            SettingsError: If that is no number of processes.
+        """
+        if self.workers is not None and not 1 <= self.workers <= 1024:
+            raise SettingsError("--workers", [Fault(f"{self.workers}", "1 to 1,024")])
+        return Workers(len(os.sched_getaffinity(0)) if self.workers is None else self.workers, self.ray)
 
 
 def run_bench_from_options(options: BenchOptions) -> None:
@@ -95,23 +105,33 @@ def run_from_options(options: BenchOptions, *, names: Sequence[str] | None = Non
 
     Raises:
         InputError: If something typed cannot be used.
+        MissingDependencyError: If it needs what is not installed.
         RecordWriteError: If the disk is full.
     """
     console = Console(highlight=False, stderr=True)
+    if options.ray is not None:
+        require_ray()
     if options.resume is not None:
+        who = options.who
+        more = [item.name for item in methods(parse_planners(options.add))] if options.add else []
         folder, store = options.resume, RunStore.open(options.resume)
     else:
-        plan = _plan(options, names or [name.strip() for name in options.planners.split(",") if name.strip()])
+        if options.add:
+            raise SettingsError("--add", [Fault(f"{options.add} without --resume", "a run to add to", "--resume RUN")])
+        plan = _plan(options, names or parse_planners(options.planners))
+        who, more = options.who, []
         folder = options.out or _free_folder(plan)
         store = RunStore.create(folder, plan, _about())
     with store:
+        if more:
+            store.extend(more)
         if not options.quiet:
             for line in about_split(store.plan.split, store.plan.vehicles):
                 console.print(line, markup=False, soft_wrap=True)
         try:
-            _run(store, options, console)
+            _run(store, who, console, quiet=options.quiet)
         except KeyboardInterrupt:
-            complain(f"stopped; what is finished is kept: rex bench --resume {folder}")
+            complain(f"what is finished is kept: go on with --resume {folder}")
             raise
     return folder
 
@@ -125,20 +145,20 @@ def about_split(split: Split, vehicles: Sequence[str]) -> list[str]:
     return [*lines, *split.attributions]
 
 
-def _run(store: RunStore, options: BenchOptions, console: Console) -> None:
+def _run(store: RunStore, who: Workers, console: Console, *, quiet: bool) -> None:
     columns = (
         BarColumn(bar_width=30),
         TextColumn("{task.completed}/{task.total} missions"),
         TextColumn("{task.fields[pace]}", markup=False),
         TimeElapsedColumn(),
     )
-    with Progress(*columns, console=console, disable=options.quiet, refresh_per_second=4) as bar:
+    with Progress(*columns, console=console, disable=quiet, refresh_per_second=4) as bar:
         shown = bar.add_task("missions", total=None, pace="starting")
 
         def on_done(progress: BenchProgress) -> None:
             bar.update(shown, total=progress.total, completed=progress.finished, pace=_pace(progress))
 
-        run_bench(store, options.who, on_done)
+        run_bench(store, who, on_done)
 
 
 def _pace(progress: BenchProgress) -> str:
@@ -149,7 +169,18 @@ def _pace(progress: BenchProgress) -> str:
 
 
 def _plan(options: BenchOptions, names: Sequence[str]) -> BenchPlan:
-    chosen = methods(names)
+    """Return what is to be run; nothing is made on disk before all of it is known to be right.
+
+    Raises:
+        SettingsError: With everything that is wrong with what was typed.
+        InputError: If no split can be made of it.
+    """
+    found = Gathering()
+    chosen = found.take(lambda: methods(names), None)
+    explorer = found.take(lambda: ExplorerSettings(t_max_s=options.t_max_min * 60.0), ExplorerSettings())
+    nothing: tuple[int, ...] = ()
+    seeds = found.take(lambda: parse_seeds(options.seeds), nothing) or (0,)
+    levels = found.take(lambda: parse_levels(options.levels), nothing)
     base = MissionSettings(
         minds=options.minds,
         visionary=options.visionary,
@@ -158,52 +189,61 @@ def _plan(options: BenchOptions, names: Sequence[str]) -> BenchPlan:
         captioner=options.captioner,
         latency=options.latency,
         clock=options.clock,
-        explorer=ExplorerSettings(t_max_s=options.t_max_min * 60.0),
+        explorer=explorer,
         success_radius_m=options.radius_m,
     )
-    # Names and numbers are checked before worlds are made, which takes seconds.
-    unmade = BenchPlan(
-        split=Split("unmade", 0, (), (), {}),
-        methods=tuple(item.name for item in chosen),
-        vehicles=tuple(name.strip() for name in options.vehicle.split(",") if name.strip()),
-        base=base,
-        seeds=_seeds(options.seeds),
-        keep_traces=options.traces,
+    unmade = found.take(
+        lambda: BenchPlan(
+            split=Split("unmade", 0, (), (), {}),
+            methods=tuple(item.name for item in chosen) if chosen else ("random",),
+            vehicles=tuple(name.strip() for name in options.vehicle.split(",") if name.strip()),
+            base=base,
+            seeds=seeds,
+            keep_traces=options.traces,
+        ),
+        None,
     )
-    return replace(unmade, split=_split(options))
-
-
-def _split(options: BenchOptions) -> Split:
-    faults = []
+    workers = found.take(lambda: options.who, None)
     if options.per_cell is not None and not 1 <= options.per_cell <= 1000:
-        faults.append(Fault(f"--per-cell {options.per_cell}", "1 to 1,000"))
-    if options.workers is not None and not 1 <= options.workers <= 1024:
-        faults.append(Fault(f"--workers {options.workers}", "1 to 1,024"))
-    if faults:
-        raise SettingsError("benchmark", faults)
+        found.add(SettingsError("--per-cell", [Fault(f"{options.per_cell}", "1 to 1,000")]))
+    if options.out is not None and options.out.exists() and not _is_empty(options.out):
+        fault = Fault(f"{options.out} is there", "a new or empty folder", "or go on with it: --resume")
+        found.add(SettingsError("--out", [fault]))
+    places = found.take(lambda: _places(options), None)
+    found.finish("benchmark")
+    if unmade is None or workers is None or places is None:  # their errors were raised
+        raise AssertionError
+    return replace(unmade, split=_split(options, *places, levels=levels, workers=workers.count))
+
+
+def _is_empty(folder: Path) -> bool:
+    return folder.is_dir() and not any(folder.iterdir())
+
+
+def _places(options: BenchOptions) -> tuple[tuple[Place, ...], int, int]:
+    """Return where the episodes take place, how many each place deals per cell, and the seed."""
+    bbox = parse_bbox(options.bbox)
     if options.worlds:
-        places = places_of_worlds(options.worlds, bbox=parse_bbox(options.bbox))
-        name, per_cell, seed = "own", options.per_cell or 2, OWN_SPLIT_SEED
-    else:
-        places, per_cell, seed = generated_places(options.split)
-        name, per_cell = options.split, options.per_cell or per_cell
-    if options.split_seed is not None or (not options.worlds and options.per_cell):
-        name, seed = f"{name}-own", options.split_seed if options.split_seed is not None else seed
-    dealing = Dealing(seed, radius_m=options.radius_m)
-    split = split_of(name, places, per_cell=per_cell, dealing=dealing, workers=options.who.count)
-    return split.only(levels=options.levels) if options.levels else split
+        return places_of_worlds(options.worlds, bbox=bbox), 2, OWN_SPLIT_SEED
+    if bbox is not None:
+        raise SettingsError("--bbox", [Fault(f"{options.bbox} without --world", "an OpenStreetMap file to crop")])
+    return generated_places(options.split)
 
 
-def _seeds(text: str) -> tuple[int, ...]:
-    faults, seeds = [], []
-    for part in text.split(","):
-        if part.strip().isdecimal():
-            seeds.append(int(part))
-        else:
-            faults.append(Fault(f"{part.strip()!r}", "whole numbers from 0 with commas between them"))
-    if faults:
-        raise SettingsError("--seeds", faults)
-    return tuple(seeds)
+def _split(
+    options: BenchOptions, places: tuple[Place, ...], per_cell: int, seed: int, *, levels: tuple[int, ...], workers: int
+) -> Split:
+    name = "own" if options.worlds else options.split
+    if options.split_seed is not None or (not options.worlds and options.per_cell is not None):
+        name = f"{name}-own"
+    dealing = Dealing(
+        seed if options.split_seed is None else options.split_seed,
+        time_limit_s=options.t_max_min * 60.0,
+        radius_m=options.radius_m,
+    )
+    dealt = per_cell if options.per_cell is None else options.per_cell
+    split = split_of(name, places, per_cell=dealt, dealing=dealing, workers=workers)
+    return split.only(levels=levels) if levels else split
 
 
 def _about() -> dict[str, object]:
@@ -221,9 +261,15 @@ def _free_folder(plan: BenchPlan) -> Path:
     return folder
 
 
-def results_of(store: RunStore, vehicle: str) -> Results:
+def results_of(store: RunStore, plan: BenchPlan, vehicle: str) -> Results:
     """Return the results of one vehicle of a run."""
-    return Results.of(store.rows(vehicle=vehicle), store.plan.methods)
+    return Results.of(store.rows(vehicle=vehicle), plan.methods)
+
+
+def notes_on(results: Results, plan: BenchPlan) -> Notes:
+    """Return what has to be said of one vehicle of a run."""
+    rows = [row for mine in results.rows.values() for row in mine]
+    return notes_of(rows, total=plan.count // len(plan.vehicles))
 
 
 def sheets_of(store: RunStore) -> list[Sheet]:
@@ -233,31 +279,50 @@ def sheets_of(store: RunStore) -> list[Sheet]:
         InputError: If no mission of the run is finished.
     """
     plan, sheets = store.plan, []
-    for vehicle in plan.vehicles:
-        results = results_of(store, vehicle)
-        if not results.methods:
-            continue
-        notes = notes_of(results, plan, finished=sum(len(mine) for mine in results.rows.values()))
-        sheets.append(main_sheet(results, title=f"{plan.split.label}, {vehicle}", notes=notes))
-        sheets.append(more_sheet(results))
+    by_vehicle = {vehicle: results_of(store, plan, vehicle) for vehicle in plan.vehicles}
+    by_vehicle = {vehicle: results for vehicle, results in by_vehicle.items() if results.methods}
+    if not by_vehicle:
+        raise InputError("run", [NOTHING_FINISHED])
+    for vehicle, results in by_vehicle.items():
+        notes = notes_on(results, plan)
+        sheets.append(main_sheet(results, title=f"{plan.split.label}, {vehicle}", notes=notes.lines))
+        sheets.append(more_sheet(results, notes=notes.always))
         if len(results.methods) > 1:
-            sheets.append(difference_sheet(results, results.methods[0]))
-        if len(results.cities()) > 1:
-            sheets.append(city_sheet(results))
-    if not sheets:
-        raise InputError("run", [Fault("no mission is finished", "at least one", "go on with rex bench --resume")])
-    return [*sheets, *paper_sheets()]
+            sheets.append(difference_sheet(results, results.methods[0], notes=notes.always))
+        headroom = headroom_sheet(results, notes=notes.always)
+        if headroom is not None:
+            sheets.append(headroom)
+        if len(results.cities) > 1:
+            sheets.append(city_sheet(results, notes=notes.always))
+    if len(by_vehicle) > 1:
+        always = dict.fromkeys(line for results in by_vehicle.values() for line in notes_on(results, plan).always)
+        sheets.append(vehicles_sheet(by_vehicle, notes=tuple(always)))
+    return [*sheets, *paper_sheets(("I", "II") if len(by_vehicle) > 1 else ("I",))]
 
 
 def compare_runs(first: str, second: str) -> None:
     """Print paired differences between two runs, or two methods of runs, on the missions that both have."""
-    console = Console(highlight=False)
     (one, one_method), (other, other_method) = _run_and_method(first), _run_and_method(second)
     with RunStore.open(one) as ours, RunStore.open(other) as theirs:
-        for vehicle in ours.plan.vehicles:
-            mine, its = results_of(ours, vehicle), results_of(theirs, vehicle)
-            sheet = compared_sheet(mine, its, names=(first, second), methods=(one_method, other_method))
-            print_sheet(console, sheet)
+        plan, their_plan = ours.plan, theirs.plan
+        vehicles = [name for name in plan.vehicles if name in their_plan.vehicles]
+        if not vehicles:
+            said = f"{first} has {', '.join(plan.vehicles)}, {second} has {', '.join(their_plan.vehicles)}"
+            raise InputError("comparison", [Fault(said, "runs with a vehicle in common")])
+        # All are made before one is printed: a fault of the last must not stand under half an answer.
+        sheets = [
+            compared_sheet(
+                results_of(ours, plan, vehicle),
+                results_of(theirs, their_plan, vehicle),
+                names=(first, second),
+                methods=(one_method, other_method),
+                title=vehicle,
+            )
+            for vehicle in vehicles
+        ]
+    console = Console(highlight=False)
+    for sheet in sheets:
+        print_sheet(console, sheet)
 
 
 def _run_and_method(text: str) -> tuple[Path, str | None]:

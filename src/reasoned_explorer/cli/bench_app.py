@@ -1,4 +1,4 @@
-"""The commands of many missions: ``bench``, ``compare``, ``export``."""
+"""The commands of many missions: ``bench``, ``compare``, ``export``, ``report``, ``ablate``."""
 
 from pathlib import Path
 from typing import Annotated
@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from reasoned_explorer.cli.answers import answering
+from reasoned_explorer.model import Fault, SettingsError
 
 ablate_app = typer.Typer(
     help="The paper's ablations: level 1, T_max 15 minutes, captions without error.", no_args_is_help=True
@@ -18,11 +19,36 @@ def add_commands(app: typer.Typer) -> None:
     app.command()(bench)
     app.command()(compare)
     app.command("export")(export_)
+    app.command()(report)
     app.add_typer(ablate_app, name="ablate")
+
+
+def _refuse_beside_resume(context: typer.Context) -> None:
+    """Refuse options that a run which is gone on with would not heed.
+
+    Raises:
+        SettingsError: With all of them.
+    """
+    if context.params["resume"] is None:
+        return
+    given = [
+        Fault(
+            f"{param.opts[0]} beside --resume",
+            "--add, --workers, --ray and --quiet only",
+            "a run knows its own settings",
+        )
+        for param in context.command.params
+        if param.name is not None
+        and param.name not in {"resume", "add", "workers", "ray", "quiet"}
+        and getattr(context.get_parameter_source(param.name), "name", "") == "COMMANDLINE"
+    ]
+    if given:
+        raise SettingsError("--resume", given)
 
 
 @answering
 def bench(
+    context: typer.Context,
     *,
     split: Annotated[str, typer.Option(help="mini (about a minute) or full (at least 400 missions).")] = "mini",
     planners: Annotated[
@@ -70,16 +96,18 @@ def bench(
     resume: Annotated[
         Path | None, typer.Option(metavar="RUN", help="Go on with a run that was stopped; it knows its own settings.")
     ] = None,
+    add: Annotated[str, typer.Option(help="With --resume: run these planners on its missions, too.")] = "",
     traces: Annotated[bool, typer.Option("--traces/--no-traces", help="Keep the record of each mission.")] = True,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the tables.")] = False,
 ) -> None:
     """Run planners over the missions of a split, and print one table.
 
-    Exit code 0: all missions ran. 2: bad input. 3: the disk is full. What is finished is kept: go on with --resume.
+    Exit code 0: all missions ran. 2: bad input. 3: the disk is full. 130: stopped with Ctrl-C. What is finished is
+    kept: go on with --resume.
     """
     from reasoned_explorer.cli.bench import BenchOptions, run_bench_from_options
-    from reasoned_explorer.cli.parsing import parse_levels
 
+    _refuse_beside_resume(context)
     run_bench_from_options(
         BenchOptions(
             split=split,
@@ -88,7 +116,7 @@ def bench(
             bbox=bbox,
             per_cell=per_cell,
             split_seed=split_seed,
-            levels=parse_levels(levels),
+            levels=levels,
             seeds=seeds,
             minds=minds,
             visionary=visionary,
@@ -104,6 +132,7 @@ def bench(
             ray=ray,
             out=out,
             resume=resume,
+            add=add,
             traces=traces,
             quiet=quiet,
         )
@@ -132,42 +161,87 @@ def export_(
     export_run(run, path)
 
 
+@answering
+def report(
+    run: Run,
+    *,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of the report; RUN/report by default. An old report is replaced.")
+    ] = None,
+) -> None:
+    """Make one page of a run, finished or not: tables, figures, trajectories; PNG and CSV beside it.
+
+    Exit code 0: it is written. 2: bad input. 3: the disk is full.
+    """
+    from reasoned_explorer.cli.report import write_run_report
+
+    write_run_report(run, out)
+
+
 _Split = Annotated[str, typer.Option(help="mini or full; only its level 1 is run.")]
-_Worlds = Annotated[list[str] | None, typer.Option("--world", help="A split of these worlds instead; may be repeated.")]
+_Worlds = Annotated[
+    list[str] | None, typer.Option("--world", "--worlds", help="A split of these worlds instead; may be repeated.")
+]
+_Bbox = Annotated[str | None, typer.Option(help="Crop OpenStreetMap files: lon0,lat0,lon1,lat1 (degrees).")]
+_PerCell = Annotated[int | None, typer.Option(help="Episodes of each distance in each place.")]
+_SplitSeed = Annotated[int | None, typer.Option(min=0, help="Deal other episodes.")]
+_Seeds = Annotated[str, typer.Option(help="Run each episode with each of these.")]
 _Vehicle = Annotated[str, typer.Option(help="Vehicle profiles with commas.")]
 _Latency = Annotated[str, typer.Option(help="How long modelled calls take.")]
 _Workers = Annotated[int | None, typer.Option(help="Processes on this machine.")]
+_Ray = Annotated[str | None, typer.Option(help="Run on a Ray cluster: auto, or its address.")]
 _Out = Annotated[Path | None, typer.Option(help="Folder of the run.")]
-_Resume = Annotated[Path | None, typer.Option(metavar="RUN", help="Go on with a run that was stopped.")]
+_Resume = Annotated[Path | None, typer.Option(metavar="RUN", help="Go on with an ablation that was stopped.")]
+_Traces = Annotated[bool, typer.Option("--traces/--no-traces", help="Keep the record of each mission.")]
+_Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Only the table.")]
 
 
 @ablate_app.command("depth")
 @answering
 def ablate_depth_(
+    context: typer.Context,
     *,
     depths: Annotated[str, typer.Option(help="L, with commas.")] = "0,1,2,3,4",
     split: _Split = "full",
-    world: _Worlds = None,
+    worlds: _Worlds = None,
+    bbox: _Bbox = None,
+    per_cell: _PerCell = None,
+    split_seed: _SplitSeed = None,
+    seeds: _Seeds = "0",
     minds: Annotated[str, typer.Option(help="Who imagines, scores and checks.")] = "embedded",
     vehicle: _Vehicle = "drone",
     latency: _Latency = "gpt-2023",
     workers: _Workers = None,
+    ray: _Ray = None,
     out: _Out = None,
     resume: _Resume = None,
+    traces: _Traces = True,
+    quiet: _Quiet = False,
 ) -> None:
-    """How many steps to think into the future (the paper's Table III)."""
+    """How many steps to think into the future (the paper's Table III).
+
+    Exit codes as of rex bench.
+    """
     from reasoned_explorer.cli.ablate import ablate_depth
     from reasoned_explorer.cli.bench import BenchOptions
 
+    _refuse_beside_resume(context)
     options = BenchOptions(
         split=split,
-        worlds=tuple(world or ()),
+        worlds=tuple(worlds or ()),
+        bbox=bbox,
+        per_cell=per_cell,
+        split_seed=split_seed,
+        seeds=seeds,
         minds=minds,
         vehicle=vehicle,
         latency=latency,
         workers=workers,
+        ray=ray,
         out=out,
         resume=resume,
+        traces=traces,
+        quiet=quiet,
     )
     ablate_depth(options, depths)
 
@@ -175,30 +249,49 @@ def ablate_depth_(
 @ablate_app.command("minds")
 @answering
 def ablate_minds_(
+    context: typer.Context,
     *,
     visionaries: Annotated[str, typer.Option(help="Minds that imagine, with commas.")] = "embedded,embedded-unknowing",
     evaluators: Annotated[str, typer.Option(help="Minds that score, with commas.")] = "embedded,embedded-unknowing",
     checker: Annotated[str, typer.Option(help="Who notices the goal.")] = "embedded",
     split: _Split = "full",
-    world: _Worlds = None,
+    worlds: _Worlds = None,
+    bbox: _Bbox = None,
+    per_cell: _PerCell = None,
+    split_seed: _SplitSeed = None,
+    seeds: _Seeds = "0",
     vehicle: _Vehicle = "drone",
     latency: _Latency = "gpt-2023",
     workers: _Workers = None,
+    ray: _Ray = None,
     out: _Out = None,
     resume: _Resume = None,
+    traces: _Traces = True,
+    quiet: _Quiet = False,
 ) -> None:
-    """Which minds to imagine and to score with (the paper's Table IV, each evaluator's mean score beside it)."""
+    """Which minds to imagine and to score with (the paper's Table IV, each evaluator's mean score beside it).
+
+    Exit codes as of rex bench.
+    """
     from reasoned_explorer.cli.ablate import ablate_minds
     from reasoned_explorer.cli.bench import BenchOptions
 
+    _refuse_beside_resume(context)
     options = BenchOptions(
         split=split,
-        worlds=tuple(world or ()),
+        worlds=tuple(worlds or ()),
+        bbox=bbox,
+        per_cell=per_cell,
+        split_seed=split_seed,
+        seeds=seeds,
         minds=checker,
         vehicle=vehicle,
         latency=latency,
         workers=workers,
+        ray=ray,
         out=out,
         resume=resume,
+        traces=traces,
+        quiet=quiet,
     )
     ablate_minds(options, visionaries, evaluators)

@@ -82,6 +82,34 @@ def parse_levels(text: str) -> tuple[int, ...]:
     return tuple(sorted({int(part) for part in parts}))
 
 
+def parse_planners(text: str) -> list[str]:
+    """Return the names of planners between the commas; what is a setting belongs to the name before it."""
+    names: list[str] = []
+    for part in (part.strip() for part in text.split(",")):
+        if names and "=" in part and ":" not in part and ":" in names[-1]:
+            names[-1] += f",{part}"
+        elif part:
+            names.append(part)
+    return names
+
+
+def parse_seeds(text: str) -> tuple[int, ...]:
+    """Return the seeds that a person means.
+
+    Raises:
+        SettingsError: If something is no whole number from 0, or there is none.
+    """
+    parts = [part.strip() for part in text.split(",")]
+    faults = [
+        Fault(f"{part!r}", "whole numbers from 0 with commas between them")
+        for part in parts
+        if not (part.isascii() and part.isdecimal())
+    ]
+    if faults:
+        raise SettingsError("--seeds", faults)
+    return tuple(int(part) for part in parts)
+
+
 def _extent_deg(world: World) -> str:
     """Return in words which latitudes and longitudes a world covers."""
     bounds, origin = world.bounds, world.origin

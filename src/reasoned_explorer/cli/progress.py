@@ -109,7 +109,8 @@ def summary_lines(record: EpisodeRecord) -> Iterator[str]:
     """Yield how a mission ended and what it scored."""
     summary = record.summary
     if summary is None:
-        yield f"INCOMPLETE: the record ends after step {len(record.steps) - 1}; the process was cut off"
+        last = len(record.steps) - 1
+        yield f"INCOMPLETE: the record ends after step {last}; its process was killed, or its disk was full"
         return
     yield from _outcome_lines(summary)
     reference = "none" if summary.reference_length_m is None else f"{summary.reference_length_m:.0f} m"

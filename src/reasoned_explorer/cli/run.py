@@ -17,7 +17,9 @@ from reasoned_explorer.evaluation.mission import Mission, MissionResult
 from reasoned_explorer.evaluation.mission_settings import MissionSettings, errors_of
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.model import Fault, Gathering, RecordError, SettingsError
+from reasoned_explorer.model.checks import is_there
 from reasoned_explorer.model.record import MissionEnd, StepRecord
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.planning.setting_pairs import parse_planner_settings
 from reasoned_explorer.task.reading import read_goal
 from reasoned_explorer.world.files import save_world
@@ -117,8 +119,11 @@ def run_from_options(options: RunOptions) -> None:
     settings, bbox, folder = options.checked()
     if not options.quiet and not _kernels_are_compiled():
         console.print("compiling the kernels, which takes up to a minute (the first time only) …", markup=False)
+    stop_if_asked()
     world = open_world(options.world, seed=options.seed, bbox=bbox)
+    stop_if_asked()
     mission = Mission(options.goal, world, settings, start=parse_start(options.start, world))
+    stop_if_asked()
     if not options.quiet:
         for line in header_lines(mission.header):
             console.print(line, markup=False, soft_wrap=True)
@@ -149,8 +154,10 @@ def _kernels_are_compiled() -> bool:
 
 
 def _keep(result: MissionResult, folder: Path, *, draw: bool) -> None:
+    stop_if_asked()
     save_world(result.world, folder / WORLD_NAME)
     if draw:
+        stop_if_asked()
         result.draw_map(folder / MAP_NAME)
 
 
@@ -163,7 +170,7 @@ def _exit_code(result: MissionResult) -> ExitCode:
 def _folder(options: RunOptions) -> Path:
     """Return where the run is kept: as given, or the first free name under ``runs/``."""
     if options.out is not None:
-        if options.out.exists() and (not options.out.is_dir() or any(options.out.iterdir())):
+        if is_there(options.out) and (not options.out.is_dir() or any(options.out.iterdir())):
             fault = Fault(
                 f"{options.out} is there and not an empty folder", "a new or empty folder", "give another --out"
             )

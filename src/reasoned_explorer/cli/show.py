@@ -7,6 +7,7 @@ from rich.console import Console
 from reasoned_explorer.cli.progress import Progress, header_lines, step_details, summary_lines
 from reasoned_explorer.evaluation.record_file import read_record
 from reasoned_explorer.model import Fault, RecordError
+from reasoned_explorer.model.stopping import stop_if_asked
 
 
 def show_run(folder: Path, *, step: int | None = None) -> None:
@@ -31,6 +32,7 @@ def show_run(folder: Path, *, step: int | None = None) -> None:
         say(line)
     progress = Progress()
     for kept in record.steps:
+        stop_if_asked()
         for line in progress.lines(kept):
             say(line)
     for line in summary_lines(record):

@@ -5,6 +5,7 @@ from pathlib import Path
 from rich.console import Console
 
 from reasoned_explorer.cli.parsing import parse_bbox
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.world.files import save_world
 from reasoned_explorer.world.generator import DISTRICTS
 from reasoned_explorer.world.opening import WORLDS, open_world
@@ -52,11 +53,13 @@ def draw_map(spec: str, out: Path, *, bbox: str | None, seed: int, width_px: int
     from reasoned_explorer.world.drawing import draw_world
 
     world = open_world(spec, seed=seed, bbox=parse_bbox(bbox))
+    stop_if_asked()
     draw_world(world, out, width_px=width_px, labels=labels)
     _say(f"drawn to {out}")
 
 
 def _report(world: World, out: Path | None) -> None:
+    stop_if_asked()
     for line in summarise(world).lines():
         _say(line)
     if out is not None:

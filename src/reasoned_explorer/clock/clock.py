@@ -11,6 +11,7 @@ from collections.abc import Coroutine
 from typing import Any, Protocol, TypeVar
 
 from reasoned_explorer.clock.virtual_loop import VirtualEventLoop
+from reasoned_explorer.model.stopping import on_stop, stop_if_asked
 
 T = TypeVar("T")
 
@@ -30,7 +31,11 @@ class Clock(Protocol):
         """Let the seconds pass that a modelled, cached or replayed call is charged."""
 
     def run(self, mission: Coroutine[Any, Any, T]) -> T:
-        """Run a mission from its start to its end on this clock and return what it returns."""
+        """Run a mission from its start to its end on this clock and return what it returns.
+
+        Raises:
+            KeyboardInterrupt: If a person asks to stop; the mission is cancelled where it waits.
+        """
 
 
 class VirtualClock:
@@ -63,7 +68,7 @@ class VirtualClock:
         with asyncio.Runner(loop_factory=VirtualEventLoop) as runner:
             self._loop = runner.get_loop()
             self._start_s = self._loop.time()
-            return runner.run(mission)
+            return _run(runner, mission)
 
 
 class RealClock:
@@ -89,7 +94,8 @@ class RealClock:
     def run(self, mission: Coroutine[Any, Any, T]) -> T:
         """Run a mission in real time."""
         self._start_s = time.monotonic()
-        return asyncio.run(mission)
+        with asyncio.Runner() as runner:
+            return _run(runner, mission)
 
 
 class MixedClock:
@@ -124,4 +130,22 @@ class MixedClock:
     def run(self, mission: Coroutine[Any, Any, T]) -> T:
         """Run a mission in mixed time."""
         self._start_s, self._jumped_s = time.monotonic(), 0.0
-        return asyncio.run(mission)
+        with asyncio.Runner() as runner:
+            return _run(runner, mission)
+
+
+def _run(runner: asyncio.Runner, mission: Coroutine[Any, Any, T]) -> T:
+    """Run a mission; a request to stop cancels it, which is safe since it takes effect where the mission awaits."""
+
+    async def stoppable() -> T:
+        task, loop = asyncio.current_task(), asyncio.get_running_loop()
+        if task is None:
+            raise AssertionError
+        with on_stop(lambda: loop.call_soon_threadsafe(task.cancel)):
+            return await mission
+
+    try:
+        return runner.run(stoppable())
+    except asyncio.CancelledError:
+        stop_if_asked()
+        raise

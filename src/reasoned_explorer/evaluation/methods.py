@@ -18,7 +18,7 @@ from reasoned_explorer.planning.setting_pairs import parse_planner_settings
 PERFECT_HALT = "perfect-halt"
 _HALT_SUFFIX = f"+{PERFECT_HALT}"
 
-#: The paper's method and its kin, then what asks no model.
+#: The paper's method and its kin, what asks no model, and ours.
 PLANNER_METHODS = (
     "llm-rrt",
     "llm-rrt-authors",
@@ -28,6 +28,7 @@ PLANNER_METHODS = (
     "follow-paths",
     "object-density",
     "random",
+    "fresh-ground",
 )
 CONTROL_METHODS = ("llm-rrt-echo", "llm-rrt-shuffled", "llm-as-eval-matched")
 BOUND_METHODS = ("oracle", "foresight-30m", "foresight-60m")

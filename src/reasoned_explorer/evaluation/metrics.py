@@ -23,9 +23,9 @@ from numpy.typing import NDArray
 
 from reasoned_explorer.evaluation.scoring import MissionScore
 from reasoned_explorer.evaluation.statistics import (
-    bootstrap_sums,
+    bootstrap_means,
+    drawn_groups,
     group_sums,
-    groups_of,
     percentile_interval,
     sign_flip_test,
     wilson_interval,
@@ -202,11 +202,11 @@ def compare(
         InputError: If the ids of the two sets differ or stand twice, or as `aggregate`.
     """
     ours, theirs = _paired({"first": first, "second": second}, confidence)
-    groups, interval = _groups(ours, places)
+    groups, interval = drawn_groups(_ids(ours), places)
     metrics = []
     for name in COMPARED:
         mine, other = (_values(listed, _FIGURES[name]) for listed in (ours, theirs))
-        whole, drawn = _means(np.concatenate((mine, other), axis=1), groups, seed)
+        whole, drawn = bootstrap_means(np.concatenate((mine, other), axis=1), groups, seed=seed)
         width = mine.shape[1]
         ahead = _product(drawn[:, :width]) - _product(drawn[:, width:])
         low, high = percentile_interval(ahead, confidence=confidence)
@@ -255,8 +255,10 @@ def headroom_closed(
     """
     columns = _columns(name)
     sets = _paired({"method": method, "baseline": baseline, "bound": bound}, confidence)
-    groups, interval = _groups(sets[0], places)
-    whole, drawn = _means(np.concatenate([_values(listed, columns) for listed in sets], axis=1), groups, seed)
+    groups, interval = drawn_groups(_ids(sets[0]), places)
+    whole, drawn = bootstrap_means(
+        np.concatenate([_values(listed, columns) for listed in sets], axis=1), groups, seed=seed
+    )
 
     def share(means: Floats) -> Floats:
         reached, low, high = (_product(part) for part in np.split(means, 3, axis=-1))
@@ -268,6 +270,30 @@ def headroom_closed(
         return None
     low, high = percentile_interval(share(drawn), confidence=confidence)
     return Metric(f"headroom closed ({name})", value, low, high, len(sets[0]), interval)
+
+
+def mean_of(
+    name: str, values: Mapping[str, float], *, places: Places | None = None, seed: int = 0, confidence: float = 0.95
+) -> Metric:
+    """Return the mean of what missions have beside their scores, e.g. calls.
+
+    Args:
+        name: Of the figure.
+        values: By mission id, at least one.
+        places: As in `aggregate`.
+        seed: Of the bootstrap.
+        confidence: Of the interval.
+
+    Raises:
+        InputError: If there is no value, or a mission has no place.
+    """
+    if not values:
+        raise InputError("values to average", [Fault("there is no mission", "at least one")])
+    ids = sorted(values)  # one order whatever order they come in
+    groups, interval = drawn_groups(ids, places)
+    means, drawn = bootstrap_means(np.asarray([[values[name]] for name in ids]), groups, seed=seed)
+    low, high = percentile_interval(drawn[:, 0], confidence=confidence)
+    return Metric(name, float(means[0]), low, high, len(ids), interval)
 
 
 def paired_differences(
@@ -315,20 +341,8 @@ def _differences(mine: Floats, other: Floats) -> Floats:
     return np.asarray(middle[1] * apart[:, 0] + middle[0] * apart[:, 1])
 
 
-def _groups(listed: Sequence[MissionScore], places: Places | None) -> tuple[Ints, str]:
-    """Return what is drawn as a whole, and the name of such an interval; with one place only, missions are drawn."""
-    ids = [item.mission_id for item in listed]
-    groups = groups_of(ids, places)
-    if places is None or int(groups.max()) == 0:
-        return groups_of([str(k) for k in range(len(ids))], None), "bootstrap"
-    return groups, "clustered bootstrap"
-
-
-def _means(values: Floats, groups: Ints, seed: int) -> tuple[Floats, Floats]:
-    """Return the columns' means, shape (columns,), and those of each resample, shape (resamples, columns)."""
-    sums = group_sums(np.concatenate((values, np.ones((len(values), 1))), axis=1), groups)
-    drawn = bootstrap_sums(sums, seed=seed)
-    return np.mean(values, axis=0), drawn[:, :-1] / drawn[:, -1:]
+def _ids(listed: Sequence[MissionScore]) -> list[str]:
+    return [item.mission_id for item in listed]
 
 
 def _metric(
@@ -346,10 +360,10 @@ def _metric(
     if not having:
         return Metric(name, math.nan, math.nan, math.nan, 0, "none")
     values, count = _values(having, columns), len(having)
-    groups, interval = _groups(having, places)
+    groups, interval = drawn_groups(_ids(having), places)
     if is_share and interval == "bootstrap":
         return _wilson(name, values, confidence)
-    means, drawn = _means(values, groups, seed)
+    means, drawn = bootstrap_means(values, groups, seed=seed)
     products = _product(drawn)
     if is_share and float(products.min()) == float(products.max()):
         return _wilson(name, values, confidence)

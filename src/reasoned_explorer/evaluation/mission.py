@@ -2,7 +2,7 @@
 
 import gc
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, replace
 from functools import cache
 from importlib.metadata import version
@@ -22,8 +22,21 @@ from reasoned_explorer.minds.context import MindContext
 from reasoned_explorer.minds.latency import latency_profile
 from reasoned_explorer.minds.ledger import CallRecord, Ledger
 from reasoned_explorer.minds.registry import make_minds
-from reasoned_explorer.model import Gathering, LegOutcome, TrackPoint
+from reasoned_explorer.model import (
+    Fault,
+    Gathering,
+    InputError,
+    LegOutcome,
+    RecordError,
+    RecordWriteError,
+    SettingsError,
+    StartError,
+    TrackPoint,
+    WorldError,
+)
+from reasoned_explorer.model.checks import kind_faults, path_of
 from reasoned_explorer.model.record import EpisodeRecord, MissionEnd, MissionHeader, MissionSummary, StepRecord
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.perception.context import CaptionerContext
 from reasoned_explorer.perception.registry import CAPTIONERS
 from reasoned_explorer.planning.registry import make_planner
@@ -71,7 +84,7 @@ class MissionResult:
         """Draw what happened on a map, PNG, SVG or PDF by the path's suffix."""
         from reasoned_explorer.evaluation.record_map import draw_record
 
-        draw_record(self.world, self.record, Path(path))
+        draw_record(self.world, self.record, path_of(path, "map picture", RecordError))
 
 
 class Mission:
@@ -82,12 +95,14 @@ class Mission:
         world: A world, or an atlas of one where several missions share it.
         settings: Who does what.
         start: Where it begins; None draws a start by the seed.
+        judge: A judge of this goal, world, vehicle and success radius from an earlier mission, to share its work with.
 
     Raises:
         GoalError: If the goal cannot be understood.
-        StartError: If no mission can begin at the start, or no start can be found.
+        StartError: If the start is none or no mission can begin at it, or no start can be found.
+        WorldError: If the world is none.
         UnknownNameError: If a name is not registered.
-        SettingsError: If settings are out of range.
+        SettingsError: If settings are none or out of range.
         InputError: If several of these are wrong, with all that can be told without looking into the world.
     """
 
@@ -98,22 +113,21 @@ class Mission:
         settings: MissionSettings | None = None,
         *,
         start: Pose | None = None,
+        judge: Judge | None = None,
     ) -> None:
+        _check_arguments(world, settings, start)
         self.settings = settings if settings is not None else MissionSettings()
         self.atlas = world if isinstance(world, Atlas) else Atlas(world)
-        self.spec = _checked(goal, self.atlas.world, self.settings, start)
-        self.goal = self.spec.goal
+        spec = _checked(goal, self.atlas.world, self.settings, start)
         self.profile = vehicle_profile(self.settings.vehicle)
-        traveller = traveller_of(self.profile)
-        self.judge = Judge(
-            self.atlas,
-            self.spec,
-            traveller=traveller,
-            success_radius_m=self.settings.success_radius_m,
-            camera_height_m=self.profile.camera_height_m,
-        )
+        stop_if_asked()
+        self.judge = judge or judge_of(spec, self.atlas, self.settings.vehicle, self.settings.success_radius_m)
+        self.spec = self.judge.spec
+        self.goal = self.spec.goal
+        stop_if_asked()
         self._notes: tuple[str, ...] = ()
-        self.start = self._start(start, traveller)
+        self.start = self._start(start, self.judge.traveller)
+        stop_if_asked()
         self.clock = CLOCKS[self.settings.clock]()
         # Privileged minds and the guide alone may read the truth; they are the only ones that ask for it.
         truth = OracleTruth(self.atlas, self.judge, self.profile, self.settings.explorer)
@@ -128,7 +142,9 @@ class Mission:
             on_step: Called with each step's record as soon as the step is over.
 
         Raises:
-            RecordError: If the record cannot be written; the mission ends at once and what was written stays.
+            RecordError: If no record can be begun in the folder.
+            RecordWriteError: If the record cannot be written on; the mission ends at once, and the record at its last
+                whole step. Before the first one nothing is left.
             KeyboardInterrupt: If a person stops it; the record then says so and ends at its last whole step.
         """
         header = self.header
@@ -158,16 +174,26 @@ class Mission:
             with _rare_collections():
                 exploration = self.clock.run(self.explorer.run(self.goal))
         except KeyboardInterrupt:
-            stopped = self._exploration_so_far(steps)
-            summary, _ = self._summary(header, stopped, steps)
-            if writer is not None:
-                writer.summary(summary)
+            self._break_off("stopped by a person", header, steps, writer)
+            raise
+        except RecordWriteError as error:
+            # A summary is short: often there is room for it where there was none for a step.
+            with suppress(RecordWriteError):
+                self._break_off(str(error), header, steps, writer)
             raise
         summary, score = self._summary(header, exploration, steps)
         if writer is not None:
             writer.summary(summary)
         folder = writer.path.parent if writer is not None else None
         return MissionResult(EpisodeRecord(header, tuple(steps), summary), self.atlas.world, score, folder)
+
+    def _break_off(
+        self, reason: str, header: MissionHeader, steps: list[StepRecord], writer: RecordWriter | None
+    ) -> None:
+        """Have the record say why it ends here."""
+        if writer is not None:
+            stopped = self._exploration_so_far(steps, reason)
+            writer.summary(self._summary(header, stopped, steps)[0])
 
     def _start(self, start: Pose | None, traveller: Traveller) -> Pose:
         if start is not None:
@@ -271,11 +297,11 @@ class Mission:
             for index, grade in self.judge.satisfying
         )
 
-    def _exploration_so_far(self, steps: list[StepRecord]) -> Exploration:
+    def _exploration_so_far(self, steps: list[StepRecord], reason: str) -> Exploration:
         last = steps[-1] if steps else None
         plan_s = sum(step.plan_s for step in steps)
         ct_s, tt_s = (last.ct_s, last.tt_s) if last else (0.0, 0.0)
-        return Exploration(MissionEnd.INTERRUPTED, "stopped by a person", ct_s, tt_s, plan_s, len(steps))
+        return Exploration(MissionEnd.INTERRUPTED, reason, ct_s, tt_s, plan_s, len(steps))
 
     def _summary(
         self, header: MissionHeader, ended: Exploration, steps: list[StepRecord]
@@ -343,6 +369,19 @@ class Mission:
         return f"the nearest is {end.nearest_m:.0f} m away" if np.isfinite(end.nearest_m) else "there is none"
 
 
+def _check_arguments(world: object, settings: object, start: object) -> None:
+    made = "open_world makes one of a name or a file"
+    found: dict[type[InputError], list[Fault]] = {
+        WorldError: kind_faults("world", world, (World, Atlas), "a World or an Atlas", made),
+        SettingsError: kind_faults("settings", settings, (MissionSettings, type(None)), "MissionSettings, or None"),
+        StartError: kind_faults("start", start, (Pose, type(None)), "a Pose, or None for a random one"),
+    }
+    kinds = [kind for kind, faults in found.items() if faults]
+    if kinds:
+        kind = kinds[0] if len(kinds) == 1 else InputError
+        raise kind("mission", [fault for faults in found.values() for fault in faults])
+
+
 def _checked(goal: str, world: World, settings: MissionSettings, start: Pose | None) -> GoalSpec:
     """Return what the goal asks for, once all that is given has been checked that needs no look into the world."""
     found = Gathering()
@@ -391,6 +430,24 @@ def traveller_of(profile: VehicleProfile) -> Traveller:
     return Traveller(flies=profile.flies, radius_m=profile.radius_m, collides=profile.collides)
 
 
+def judge_of(goal: str | GoalSpec, atlas: Atlas, vehicle: str, success_radius_m: float) -> Judge:
+    """Return the judge of a goal in a world for a vehicle.
+
+    Raises:
+        GoalError: If the goal cannot be understood.
+        UnknownNameError: If there is no such vehicle.
+        SettingsError: If the radius is out of range.
+    """
+    profile = vehicle_profile(vehicle)
+    return Judge(
+        atlas,
+        read_goal(goal) if isinstance(goal, str) else goal,
+        traveller=traveller_of(profile),
+        success_radius_m=success_radius_m,
+        camera_height_m=profile.camera_height_m,
+    )
+
+
 def track_of(start: Pose, steps: list[StepRecord]) -> list[TrackPoint]:
     """Return the true way travelled; the start is in it."""
     track = [TrackPoint(0.0, start.x_m, start.y_m, start.z_m, start.heading_rad)]
@@ -424,4 +481,4 @@ def run_mission(
 ) -> MissionResult:
     """Run one mission; see `Mission` for the arguments and what it raises."""
     mission = Mission(goal, world, settings, start=start)
-    return mission.run(folder=Path(folder) if folder is not None else None, on_step=on_step)
+    return mission.run(folder=path_of(folder, "folder", RecordError) if folder is not None else None, on_step=on_step)

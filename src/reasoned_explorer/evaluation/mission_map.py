@@ -11,6 +11,7 @@ from reasoned_explorer.evaluation.mission_panel import MARGIN_PT, footnotes, wri
 from reasoned_explorer.evaluation.mission_signs import RIM_PT
 from reasoned_explorer.evaluation.mission_trace import MapFrontier, MapGoal, MissionTrace
 from reasoned_explorer.model.errors import RecordError
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.world.drawing import fitted_bounds
 from reasoned_explorer.world.drawing_style import Palette, wrapped
 from reasoned_explorer.world.lettering import Room, letter_streets, place_badges
@@ -56,7 +57,8 @@ def draw_mission(world: World, trace: MissionTrace, path: Path | str, *, width_p
 
     Raises:
         RecordError: If the trace has numbers that are not finite or states that are unknown, if the width is no good
-            or if the file cannot be written; with all the reasons.
+            or if the file cannot be written there; with all the reasons.
+        PartError: If the disk fails, e.g. because it is full.
     """
     target = Path(path)
     faults = [*check_target(target, width_px), *trace.faults()]
@@ -84,11 +86,14 @@ def compose_mission(world: World, trace: MissionTrace) -> Sheet:
     board = Board(axes, shown, shown.width_m / map_width, sheet.palette.muted(_MUTED))
     paint_world(board, world)
     _paint_outside(board, world.bounds)
+    stop_if_asked()
     room = Room(board)
     near = board.metres_per_point < 0.7
     classes = place_badges(board, world.objects, Room(board), share=0.86, alpha=0.62 if near else 0.45, dots=near)
     _write_scale(sheet, board, room, trace, (MARGIN_PT, foot))
+    stop_if_asked()
     paint_mission(board, trace, room)
+    stop_if_asked()
     letter_streets(board, world.ways, room, colour="#7b8088", limit=30)
     write_headline(sheet, headline, trace.subtitle)
     write_panel(

@@ -152,7 +152,7 @@ def with_overrides(settings: ExplorerSettings, planner: Planner) -> ExplorerSett
     Raises:
         SettingsError: If the agent has no such settings, or their values are out of range.
     """
-    overrides: Mapping[str, bool] = getattr(planner, "explorer", {})
+    overrides: Mapping[str, Any] = getattr(planner, "explorer", {})
     known = {each.name for each in fields(settings)}
     unknown = [Fault(f"no setting {key!r}", "a setting of the agent") for key in sorted(set(overrides) - known)]
     if unknown:

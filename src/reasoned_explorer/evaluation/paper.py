@@ -6,9 +6,11 @@ section V. Its figures are of another simulator, other minds, other goals, start
 
 from dataclasses import dataclass
 
+from reasoned_explorer.evaluation.wording import NONE, share
+
 #: What must stand over these tables wherever they are shown.
 PAPER_NOTE = (
-    "The paper's figures, not this run's, and not to be compared with it number by number: another simulator (AirSim, "
+    "The paper’s figures, not this run’s, and not to be compared with it number by number: another simulator (AirSim, "
     "Downtown West), other minds (GPT-3.5 and GPT-4 on captions of Kosmos-2), goals, starts and judges of its own, "
     "about 17 missions a level, no intervals."
 )
@@ -33,6 +35,12 @@ class PaperTable:
     columns: tuple[str, ...]
     rows: tuple[tuple[str, tuple[float | None, ...]], ...]
     digits: tuple[int, ...]
+
+    def written(self, name: str) -> tuple[str, ...]:
+        """Return the cells of a row with as many digits as the paper gives; a dash where it has none."""
+        values = dict(self.rows)[name]
+        pairs = zip(values, self.digits, strict=True)
+        return tuple(NONE if value is None else share(value, digits) for value, digits in pairs)
 
 
 _LEVELS = ("L1", "L2", "L3", "L4", "avg")

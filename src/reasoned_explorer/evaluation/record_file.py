@@ -1,11 +1,12 @@
 """A mission's record on disk: one JSON line for the header, one for each step as it ends, one for the summary.
 
-A record whose process was killed, or whose disk ran full, ends at its last whole step; reading it gives the steps that
-there are and no summary. Nothing in a record depends on wall time or on where it is kept, so that the same mission
-writes the same bytes.
+A record whose disk ran full is cut back to its last whole step and, where there is room for that, says what happened;
+one whose process was killed is read to its last whole step and has no summary. Nothing in a record depends on wall time
+or on where it is kept, so that the same mission writes the same bytes.
 """
 
 import json
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -13,6 +14,8 @@ from typing import Any, Self
 from pydantic import TypeAdapter, ValidationError
 
 from reasoned_explorer.model import Fault, RecordError, RecordWriteError
+from reasoned_explorer.model.checks import path_of
+from reasoned_explorer.model.disk import disk_error, in_words
 from reasoned_explorer.model.record import RECORD_SCHEMA, EpisodeRecord, MissionHeader, MissionSummary, StepRecord
 
 RECORD_NAME = "record.jsonl"
@@ -25,17 +28,24 @@ _SUMMARY = TypeAdapter(MissionSummary)
 class RecordWriter:
     """Writes a record while the mission runs; a context manager.
 
+    What cannot be written whole is cut off again. A record that fails before its first whole step is taken away, and
+    the folders that were made for it with it.
+
     Args:
         folder: Of the record; made where it is not there. It must not hold a record already.
 
     Raises:
         RecordError: If the folder cannot be made or holds a record.
+        PartError: If the disk fails.
         RecordWriteError: From each line that cannot be written: the disk is full, say.
     """
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / RECORD_NAME
+        self._whole_bytes = self._whole_steps = 0
+        self._made: list[Path] = []
         try:
+            self._made = [each for each in (folder, *folder.parents) if not each.exists()]
             folder.mkdir(parents=True, exist_ok=True)
             # Unbuffered: a killed process loses the step that it was in and no other.
             self._file = self.path.open("xb", buffering=0)
@@ -43,8 +53,8 @@ class RecordWriter:
             fault = Fault(f"{self.path} is there already", "a folder without a record", "give another folder")
             raise RecordError("record", [fault]) from error
         except OSError as error:
-            fault = Fault(f"{self.path} cannot be written: {error.strerror}", "a folder that can be written to")
-            raise RecordError("record", [fault]) from error
+            self._take_away()
+            raise disk_error("record", self.path, error, kind=RecordError) from error
 
     def header(self, header: MissionHeader) -> None:
         """Write the first line."""
@@ -53,6 +63,7 @@ class RecordWriter:
     def step(self, step: StepRecord) -> None:
         """Write one step."""
         self._line(b"step", _STEP.dump_json(step))
+        self._whole_steps += 1
 
     def summary(self, summary: MissionSummary) -> None:
         """Write the last line."""
@@ -69,17 +80,34 @@ class RecordWriter:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+        if isinstance(error, RecordWriteError) and self._whole_steps == 0:
+            self._take_away()
+
+    def _take_away(self) -> None:
+        with suppress(OSError):
+            self.path.unlink(missing_ok=True)
+        with suppress(OSError):
+            for folder in self._made:
+                folder.rmdir()
 
     def _line(self, kind: bytes, payload: bytes) -> None:
-        rest = memoryview(b'{"' + kind + b'":' + payload + b"}\n")
+        line = memoryview(b'{"' + kind + b'":' + payload + b"}\n")
+        rest = line
         try:
             while rest:
                 rest = rest[self._file.write(rest) :]
-        except OSError as error:
-            raise RecordWriteError(f"record: {self.path} cannot be written: {error.strerror}") from error
+        except BaseException as error:
+            # Making a file shorter takes no room.
+            with suppress(OSError):
+                self._file.truncate(self._whole_bytes)
+                self._file.seek(self._whole_bytes)
+            if isinstance(error, OSError):
+                raise RecordWriteError(f"record: {in_words(self.path, error)}") from error
+            raise
+        self._whole_bytes += len(line)
 
 
-def read_record(folder: Path) -> EpisodeRecord:
+def read_record(folder: Path | str) -> EpisodeRecord:
     """Return the record in a folder (or the record file itself).
 
     A last line that was cut off is left out.
@@ -87,8 +115,10 @@ def read_record(folder: Path) -> EpisodeRecord:
     Raises:
         RecordError: If there is no record, it is of another version, or a line other than the last is broken.
     """
-    path = folder / RECORD_NAME if folder.is_dir() else folder
+    path = path_of(folder, "record", RecordError)
     try:
+        if path.is_dir():
+            path /= RECORD_NAME
         data = path.read_bytes()
     except OSError as error:
         fault = Fault(f"{path}: {error.strerror}", "the folder of a run", "rex run leaves one")

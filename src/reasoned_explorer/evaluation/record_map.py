@@ -16,7 +16,8 @@ def draw_record(world: World, record: EpisodeRecord, path: Path) -> None:
     """Draw a record on the map of its world; the suffix of the path decides the format.
 
     Raises:
-        RecordError: If the picture cannot be written.
+        RecordError: If the picture cannot be written there.
+        PartError: If the disk fails, e.g. because it is full.
     """
     draw_mission(world, trace_of(record, world), path)
 

@@ -3,7 +3,8 @@
 Missions of one place are not independent: they share its map, its crowds of trees, its lack of benches. So a place is
 drawn, kept or flipped as a whole:
 
-- `bootstrap_sums`, `percentile_interval`: the cluster bootstrap (Field, Welsh, "Bootstrapping clustered data", 2007).
+- `bootstrap_sums`, `bootstrap_means`, `percentile_interval`: the cluster bootstrap (Field, Welsh, "Bootstrapping
+  clustered data", 2007).
 - `sign_flip_test`: a paired permutation test (Fisher, "The design of experiments", 1935).
 - `holm`: correction for many comparisons (Holm, "A simple sequentially rejective multiple test procedure", 1979).
 - `wilson_interval`: a share of independent trials (Wilson, "Probable inference", 1927).
@@ -287,6 +288,31 @@ def groups_of(ids: Sequence[str], places: Mapping[str, str] | None) -> Ints:
         )
     rank = {place: k for k, place in enumerate(sorted({places[name] for name in ids}))}
     return np.asarray([rank[places[name]] for name in ids], dtype=np.int64)
+
+
+def drawn_groups(ids: Sequence[str], places: Mapping[str, str] | None) -> tuple[Ints, str]:
+    """Return what is drawn as a whole, and the name of such an interval; with one place only, missions are drawn.
+
+    Raises:
+        InputError: If a mission has no place.
+    """
+    groups = groups_of(ids, places)
+    if places is None or int(groups.max()) == 0:
+        return groups_of(ids, None), "bootstrap"
+    return groups, "clustered bootstrap"
+
+
+def bootstrap_means(values: Floats, groups: Ints, *, seed: int) -> tuple[Floats, Floats]:
+    """Return the columns' means, shape (columns,), and those of each resample, shape (RESAMPLES, columns).
+
+    Args:
+        values: Of each mission, shape (missions, columns).
+        groups: Of each mission, shape (missions,); drawn as a whole.
+        seed: Of the draws.
+    """
+    sums = group_sums(np.concatenate((values, np.ones((len(values), 1))), axis=1), groups)
+    drawn = bootstrap_sums(sums, seed=seed)
+    return np.mean(values, axis=0), drawn[:, :-1] / drawn[:, -1:]
 
 
 def _sign(a: float, b: float) -> int:

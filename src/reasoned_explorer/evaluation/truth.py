@@ -7,7 +7,6 @@ view would be, how far it is from there, and whether the way to it is open. Whoe
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,13 +55,10 @@ class OracleTruth:
     profile: VehicleProfile
     explorer: ExplorerSettings
 
-    @cached_property
+    @property
     def remaining(self) -> DistanceField:
         """How far it is from everywhere to success, on compliant ground."""
-        judge = self.judge
-        return self.atlas.geodesics.field_m(
-            judge.success_mask(), traveller=judge.traveller, shunned=judge.spec.forbidden
-        )
+        return self.judge.remaining
 
     def verdict(self, pose: Pose) -> Verdict:
         """Say "found" where the judge would agree."""

@@ -1,7 +1,6 @@
 """The agent's loop: look, describe, imagine and check at the same time, remember, choose, travel."""
 
 import asyncio
-import contextlib
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -384,5 +383,10 @@ def _facing_onwards(route: list[Pose]) -> list[Pose]:
 async def _cancel(task: "asyncio.Future[Plan]") -> None:
     if not task.done():
         task.cancel()
-        with contextlib.suppress(asyncio.CancelledError):
+        try:
             await task
+        except asyncio.CancelledError:
+            # Which of the two was cancelled: the task, or, while it ends, the mission itself?
+            mission = asyncio.current_task()
+            if mission is not None and mission.cancelling():
+                raise

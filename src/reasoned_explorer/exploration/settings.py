@@ -4,6 +4,9 @@ import math
 from dataclasses import dataclass
 
 from reasoned_explorer.model import Fault, SettingsError
+from reasoned_explorer.model.checks import is_within, kind_faults
+
+_SWITCHES = ("straight_distance", "look_back_after_stop", "check_after_planning", "straight_legs")
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,24 +58,37 @@ class ExplorerSettings:
 
     def __post_init__(self) -> None:
         low, high = self.step_range_m(None)
-        # Written so that NaN, which compares false with everything, fails each check.
+        sweep = f"{math.degrees(self.sweep_rad)}°" if is_within(self.sweep_rad) else repr(self.sweep_rad)
+        steps = is_within(low, 0.5, 200.0) and is_within(high, 0.5, 200.0) and low <= high
         checks = (
-            (1 <= self.views <= 24, f"views is {self.views}", "1 to 24"),
-            (0.0 <= self.sweep_rad <= 2 * math.pi, f"sweep is {math.degrees(self.sweep_rad)}°", "0° to 360°"),
-            (0.5 <= low <= high <= 200.0, f"steps are {low} to {high} m", "0.5 m ≤ shortest ≤ longest ≤ 200 m"),
-            (0.0 < self.t_max_s <= 86_400.0, f"t_max is {self.t_max_s} s", "above 0, at most 86,400 s"),
-            (1 <= self.max_steps <= 100_000, f"max_steps is {self.max_steps}", "1 to 100,000"),
-            (1 <= self.looks_to_confirm <= 10, f"looks_to_confirm is {self.looks_to_confirm}", "1 to 10"),
-            (0.0 <= self.sharpness_per_m <= 100.0, f"k is {self.sharpness_per_m}", "0 to 100 per metre"),
-            (0.0 <= self.half_distance_m <= 1e6, f"d0 is {self.half_distance_m} m", "0 to 1,000,000 m"),
-            (0.0 <= self.known_radius_m <= 50.0, f"known radius is {self.known_radius_m} m", "0 to 50 m"),
-            (0.0 <= self.merge_radius_m <= 50.0, f"merge radius is {self.merge_radius_m} m", "0 to 50 m"),
-            (0.0 <= self.revisit_radius_m <= 50.0, f"revisit radius is {self.revisit_radius_m} m", "0 to 50 m"),
-            (1 <= self.max_faults_in_a_row <= 100, f"max_faults_in_a_row is {self.max_faults_in_a_row}", "1 to 100"),
+            (is_within(self.views, 1, 24, whole=True), f"views is {self.views!r}", "1 to 24"),
+            (is_within(self.sweep_rad, 0.0, 2 * math.pi), f"sweep is {sweep}", "0° to 360°"),
+            (steps, f"steps are {low} to {high} m", "0.5 m ≤ shortest ≤ longest ≤ 200 m"),
+            (
+                is_within(self.t_max_s, 0.0, 86_400.0) and self.t_max_s > 0.0,
+                f"t_max is {self.t_max_s} s",
+                "above 0, at most 86,400 s",
+            ),
+            (is_within(self.max_steps, 1, 100_000, whole=True), f"max_steps is {self.max_steps!r}", "1 to 100,000"),
+            (
+                is_within(self.looks_to_confirm, 1, 10, whole=True),
+                f"looks_to_confirm is {self.looks_to_confirm!r}",
+                "1 to 10",
+            ),
+            (is_within(self.sharpness_per_m, 0.0, 100.0), f"k is {self.sharpness_per_m}", "0 to 100 per metre"),
+            (is_within(self.half_distance_m, 0.0, 1e6), f"d0 is {self.half_distance_m} m", "0 to 1,000,000 m"),
+            (is_within(self.known_radius_m, 0.0, 50.0), f"known radius is {self.known_radius_m} m", "0 to 50 m"),
+            (is_within(self.merge_radius_m, 0.0, 50.0), f"merge radius is {self.merge_radius_m} m", "0 to 50 m"),
+            (is_within(self.revisit_radius_m, 0.0, 50.0), f"revisit radius is {self.revisit_radius_m} m", "0 to 50 m"),
+            (
+                is_within(self.max_faults_in_a_row, 1, 100, whole=True),
+                f"max_faults_in_a_row is {self.max_faults_in_a_row!r}",
+                "1 to 100",
+            ),
         )
         faults = [Fault(what, expected) for sound, what, expected in checks if not sound]
-        switches = {"check_after_planning": self.check_after_planning, "straight_legs": self.straight_legs}
-        faults += [Fault(f"{k} is {v!r}", "true or false") for k, v in switches.items() if not isinstance(v, bool)]
+        for name in _SWITCHES:
+            faults += kind_faults(name, getattr(self, name), bool, "true or false")
         if faults:
             raise SettingsError("exploration settings", faults)
 

@@ -16,5 +16,7 @@ CAPTIONERS = Registry(
             "reasoned_explorer.simulation.captioner:noisy",
             "simulated: misses, imagines, misplaces and confuses at assumed rates",
         ),
+        Entry("noisier", "reasoned_explorer.simulation.captioner:noisier", "simulated: 1.5 times the errors of noisy"),
+        Entry("noisiest", "reasoned_explorer.simulation.captioner:noisiest", "simulated: twice the errors of noisy"),
     ),
 )

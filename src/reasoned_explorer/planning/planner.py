@@ -47,7 +47,7 @@ class Planner(Protocol):
         name: As registered.
         label: What its results are called, minds included.
 
-    A planner may also have an attribute ``explorer``, a ``Mapping[str, bool]``: settings of the agent
+    A planner may also have an attribute ``explorer``, a ``Mapping[str, Any]``: settings of the agent
     (`exploration.settings.ExplorerSettings`) that belong to the method and override a mission's. It is optional, and
     read with ``getattr``.
     """

@@ -7,6 +7,7 @@ from typing import Any
 from reasoned_explorer.minds.context import Minds
 from reasoned_explorer.model import Fault, SettingsError
 from reasoned_explorer.planning.controls import LlmAsEvalMatched, echoing, shuffling
+from reasoned_explorer.planning.fresh_ground import FreshGround, FreshGroundSettings
 from reasoned_explorer.planning.llm_mcts import LlmMcts, LlmMctsSettings
 from reasoned_explorer.planning.llm_rrt import LlmRrt, LlmRrtSettings
 from reasoned_explorer.planning.planner import Planner
@@ -31,6 +32,11 @@ PLANNERS = Registry(
         Entry("follow-paths", f"{_HERE}:make_follow_paths", "no model: where paths and pavements lead"),
         Entry("object-density", f"{_HERE}:make_object_density", "no model: where most things stand close together"),
         Entry("random", f"{_HERE}:make_random", "no model: a frontier by chance"),
+        Entry(
+            "fresh-ground",
+            f"{_HERE}:make_fresh_ground",
+            "ours: llm-as-eval that looks around and prefers new ground unless the thing is in sight",
+        ),
         Entry("llm-rrt-echo", f"{_HERE}:make_llm_rrt_echo", "control: llm-rrt, what is imagined is what is seen"),
         Entry("llm-rrt-shuffled", f"{_HERE}:make_llm_rrt_shuffled", "control: llm-rrt, imagined from another view"),
         Entry(
@@ -135,6 +141,18 @@ def make_object_density(minds: Minds) -> Planner:  # noqa: ARG001
 def make_random(minds: Minds) -> Planner:
     """Return the random planner; it draws by the minds' seed."""
     return RandomFrontier(minds)
+
+
+def make_fresh_ground(
+    minds: Minds,
+    *,
+    hint: float = 0.4,
+    known_radius_m: float = 25.0,
+    step_max_m: float = 30.0,
+    views: int = 5,
+) -> Planner:
+    """Return Fresh-Ground; the settings are those of `FreshGroundSettings`."""
+    return FreshGround(minds, FreshGroundSettings(hint, known_radius_m, step_max_m, views))
 
 
 def make_llm_rrt_echo(minds: Minds, *, children: int = 3, depth: int = 2) -> Planner:

@@ -11,7 +11,7 @@ of `NOISY` is **assumed** within what these sources allow, and says so below.
 """
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 from reasoned_explorer.model import Fault, SettingsError
 from reasoned_explorer.model.draws import key_of
@@ -79,6 +79,26 @@ class CaptionErrors:
                 faults.append(Fault(f"{field.name} = {value!r}", f"a number in [{low:g}, {high:g}]"))
         if faults:
             raise SettingsError("caption errors", faults)
+
+    def times(self, factor: float) -> "CaptionErrors":
+        """Return errors so many times as frequent.
+
+        Rates grow with the factor up to certainty, and so does the size at which things are noticed; of what a perfect
+        captioner has (the ceiling, signs read) so much more is lost.
+
+        Raises:
+            SettingsError: If the factor is no finite number, 0 or more.
+        """
+        if not (math.isfinite(factor) and factor >= 0.0):
+            raise SettingsError("caption errors", [Fault(f"factor {factor}", "a finite number, 0 or more")])
+        rates = ("imagine_rate", "depth_error", "side_error", "relation_error", "confuse_rate", "ground_error")
+        return replace(
+            self,
+            half_seen_px=self.half_seen_px * factor,
+            ceiling=max(0.0, 1.0 - (1.0 - self.ceiling) * factor),
+            sign_rate=max(0.0, 1.0 - (1.0 - self.sign_rate) * factor),
+            **{name: min(1.0, getattr(self, name) * factor) for name in rates},
+        )
 
     def notice_probability(self, size_px: float, class_name: str) -> float:
         """Return how likely a thing is noticed whose visible part covers ``size_px`` squared pixels."""

@@ -220,3 +220,13 @@ def perfect(context: CaptionerContext) -> SimulatedCaptioner:
 def noisy(context: CaptionerContext) -> SimulatedCaptioner:
     """Make the captioner that misses, imagines, misplaces and confuses at the rates of `NOISY` (assumed)."""
     return SimulatedCaptioner("noisy", NOISY, seed=context.seed, charge=context.charge)
+
+
+def noisier(context: CaptionerContext) -> SimulatedCaptioner:
+    """Make a captioner with one and a half times the errors of `NOISY`: how a ranking stands is asked with it."""
+    return SimulatedCaptioner("noisier", NOISY.times(1.5), seed=context.seed, charge=context.charge)
+
+
+def noisiest(context: CaptionerContext) -> SimulatedCaptioner:
+    """Make a captioner with twice the errors of `NOISY`."""
+    return SimulatedCaptioner("noisiest", NOISY.times(2.0), seed=context.seed, charge=context.charge)

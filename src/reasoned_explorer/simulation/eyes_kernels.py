@@ -50,7 +50,10 @@ def _picture_height(
 
 @njit(cache=True)
 def _window(header: FloatArray, x: float, y: float, heading: float, half_fov: float, range_m: float) -> IntArray:
-    """First and last column and row of the cells that a view can reach into."""
+    """First and last column and row of the cells that a view can reach into; no rows where it reaches into none.
+
+    The grid spans only what stands somewhere: a view may well look past all of it.
+    """
     west = east = x
     south = north = y
     for step in range(_ARC_STEPS + 1):
@@ -64,6 +67,8 @@ def _window(header: FloatArray, x: float, y: float, heading: float, half_fov: fl
     window[1] = min(math.floor((east + bulge - header[0]) / header[2]), int(header[3]) - 1)
     window[2] = max(math.floor((south - bulge - header[1]) / header[2]), 0)
     window[3] = min(math.floor((north + bulge - header[1]) / header[2]), int(header[4]) - 1)
+    if window[1] < window[0]:
+        window[3] = window[2] - 1
     return window
 
 
@@ -92,9 +97,11 @@ def see_objects(
     focal_px = 0.5 * width_px / math.tan(half_fov)
     columns = int(header[3])
     window = _window(header, x, y, heading, half_fov, range_m)
+    if window[0] > window[1]:  # the view looks past the grid: these columns are none
+        window[3] = window[2] - 1
     count = 0
     for j in range(window[2], window[3] + 1):
-        count += max(seats.starts[j * columns + window[1] + 1] - seats.starts[j * columns + window[0]], 0)
+        count += seats.starts[j * columns + window[1] + 1] - seats.starts[j * columns + window[0]]
     seen = np.empty((count, 6))
     count = 0
     for j in range(window[2], window[3] + 1):

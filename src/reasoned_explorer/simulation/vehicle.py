@@ -22,6 +22,7 @@ from reasoned_explorer.model import (
     TrackPoint,
     View,
 )
+from reasoned_explorer.model.checks import is_within
 from reasoned_explorer.simulation.motion import NO_DISCS, NO_WALLS, Body, End, Ground, Motion
 from reasoned_explorer.simulation.sensors import SensorNoise, sensor_noise
 from reasoned_explorer.simulation.sighting import ViewContent
@@ -59,7 +60,7 @@ def check_on_map(bounds: "Bounds", pose: Pose) -> None:
     Raises:
         StartError: If a value is not finite or the pose is off the world.
     """
-    if not is_finite(pose.x_m, pose.y_m, pose.z_m, pose.heading_rad):
+    if not all(is_within(value) for value in (pose.x_m, pose.y_m, pose.z_m, pose.heading_rad)):
         raise StartError("start", [Fault(f"{pose}", "finite coordinates and heading")])
     if not bounds.contains(pose.x_m, pose.y_m):
         what = f"({pose.x_m:g}, {pose.y_m:g}) is off the world"

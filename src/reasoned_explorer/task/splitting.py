@@ -8,11 +8,20 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from reasoned_explorer.geometry import GeoOrigin
-from reasoned_explorer.model import Fault, SettingsError, StartError, WorldError
+from reasoned_explorer.model import (
+    Fault,
+    Gathering,
+    SettingsError,
+    StartError,
+    UnknownNameError,
+    WorldError,
+)
 from reasoned_explorer.model.draws import key_of
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.task.sampling import EpisodeDealer, SamplingSettings
 from reasoned_explorer.task.split import BANDS_M, LEVELS, Place, Split, SplitEpisode
 from reasoned_explorer.world.atlas import Atlas
@@ -58,12 +67,10 @@ def generated_places(split: str) -> tuple[tuple[Place, ...], int, int]:
     """Return the places of a built-in split, how many episodes each deals per cell, and the seed.
 
     Raises:
-        SettingsError: If there is no such split.
+        UnknownNameError: If there is no such split.
     """
     if split not in _SPLITS:
-        raise SettingsError(
-            "split", [Fault(f"{split!r}", f"one of {', '.join(_SPLITS)}", "or name worlds of your own")]
-        )
+        raise UnknownNameError("split", split, SPLIT_NAMES)
     worlds, per_cell = _SPLITS[split]
     seed = _SPLIT_SEED[split]
     names = [
@@ -84,13 +91,16 @@ def places_of_worlds(
         bbox: Crops files, degrees.
 
     Raises:
-        InputError: If a world cannot be opened, or a name stands twice.
+        InputError: If worlds cannot be opened, with all of these, or a name stands twice.
     """
     if len(set(worlds)) < len(worlds):
         raise SettingsError("worlds", [Fault(f"{', '.join(worlds)}", "each world once")])
     places: list[Place] = []
+    found = Gathering()
     for source in worlds:
-        world = open_world(source, bbox=bbox)
+        world = found.take(partial(open_world, source, bbox=bbox), None)
+        if world is None:
+            continue
         if world.origin is None:
             places.append(Place(source, source, district=source.partition(":")[0].partition("@")[0]))
             continue
@@ -99,6 +109,7 @@ def places_of_worlds(
             Place(f"{city}#{number}", source, tile, city)
             for number, tile in enumerate(_neighbourhoods_deg(world.bounds, world.origin))
         ]
+    found.finish("worlds")
     return tuple(places)
 
 
@@ -175,6 +186,7 @@ class Dealing:
             )
             first = first or dealer
             for level in LEVELS:
+                stop_if_asked()
                 for _ in range(cells.get((level, band), 0)):
                     try:
                         episode = dealer.deal(level)

@@ -2,10 +2,13 @@
 
 from functools import cached_property
 
+from reasoned_explorer.model.checks import kind_faults
+from reasoned_explorer.model.errors import WorldError
 from reasoned_explorer.world.digest import world_digest
 from reasoned_explorer.world.geodesic import Geodesics
 from reasoned_explorer.world.index import ObjectIndex
 from reasoned_explorer.world.raster import GroundRaster
+from reasoned_explorer.world.rounding import rounded
 from reasoned_explorer.world.sight import SightLines
 from reasoned_explorer.world.world import World
 
@@ -14,11 +17,16 @@ class Atlas:
     """A world with its indices.
 
     Args:
-        world: The world; it is never changed.
+        world: The world; it is never changed. A world that is finer than files keep it is asked about as they do.
+
+    Raises:
+        WorldError: If it is no world.
     """
 
     def __init__(self, world: World) -> None:
-        self.world = world
+        if faults := kind_faults("the world", world, World, "a World", "open_world makes one of a name or a file"):
+            raise WorldError("atlas", faults)
+        self.world = rounded(world)
 
     @cached_property
     def digest(self) -> str:

@@ -7,7 +7,9 @@ from pathlib import Path
 
 from matplotlib.patches import Circle, Patch, Rectangle
 
+from reasoned_explorer.model.checks import kind_faults, path_of
 from reasoned_explorer.model.errors import Fault, WorldError
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.world.drawing_style import Palette, mix, printable, width_pt, wrapped
 from reasoned_explorer.world.lettering import Room, letter_places, letter_streets, place_badges
 from reasoned_explorer.world.painting import Board, paint_world
@@ -69,9 +71,14 @@ def draw_world(
         title: Headline; the world's name if None.
 
     Raises:
-        WorldError: If the bounds or the width are no good or the file cannot be written; with all the reasons.
+        WorldError: If the bounds or the width are no good or the file cannot be written there; with all the reasons.
+        PartError: If the disk fails, e.g. because it is full.
     """
-    target = Path(path)
+    target = path_of(path, "map picture", WorldError)
+    if kinds := kind_faults("the world", world, World, "a World") + kind_faults(
+        "bounds", bounds, (Bounds, type(None)), "Bounds, or None for all"
+    ):
+        raise WorldError("map picture", kinds)
     shown = world.bounds if bounds is None else bounds
     faults = [*check_target(target, width_px), *_bounds_faults(shown)]
     if faults:
@@ -124,10 +131,13 @@ def compose(world: World, *, bounds: Bounds, labels: bool, title: str) -> Sheet:
     axes = sheet.map_axes(MARGIN_PT, foot, map_width, map_height, shown)
     board = Board(axes, shown, shown.width_m / map_width, sheet.palette)
     paint_world(board, world)
+    stop_if_asked()
     room = Room(board)
     if labels:
         letter_streets(board, world.ways, room, colour="#4a4f57")
+    stop_if_asked()
     place_badges(board, world.objects, room)
+    stop_if_asked()
     if labels:
         letter_places(board, world, room)
     _write_head(sheet, headline, _summary(world))

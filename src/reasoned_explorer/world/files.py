@@ -2,11 +2,11 @@
 
 The document is ``{"format": "rexworld", "version": 1, "world": {...}}``. Lengths are whole millimetres; of a ring or
 line the first point is given by its coordinates and every other by its step from the one before, all in one flat list.
-Headings are radians, rounded to 1e-6. Ground is called by its lower-case name. What has its default value is left out.
+Headings are radians, rounded to 1e-6 (`rounding`). Ground is called by its lower-case name. What has its default value
+is left out.
 """
 
 import gzip
-import math
 import os
 import tempfile
 import zlib
@@ -19,7 +19,10 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 from pydantic_core import from_json, to_json
 
 from reasoned_explorer.geometry import GeoOrigin
-from reasoned_explorer.model import Fault, PartError, WorldError
+from reasoned_explorer.model import Fault, WorldError
+from reasoned_explorer.model.checks import kind_faults, path_of
+from reasoned_explorer.model.disk import disk_error
+from reasoned_explorer.world.rounding import rounded
 from reasoned_explorer.world.taxonomy import OBJECT_CLASSES, Ground
 from reasoned_explorer.world.validation import check_world, near_misses
 from reasoned_explorer.world.world import Bounds, Building, Region, Ring, Way, World, WorldObject
@@ -92,7 +95,8 @@ class _WorldPart(_Part):
 def save_world(world: World, path: str | Path) -> None:
     """Write a world to a file; the same world gives the same bytes.
 
-    The file appears whole or not at all. Coordinates and sizes are rounded to 1 mm.
+    The file appears whole or not at all. What is kept is the world as `rounded` returns it, exactly: a world that was
+    made here, or opened, is so already and comes back as it was.
 
     Args:
         world: The world.
@@ -102,19 +106,19 @@ def save_world(world: World, path: str | Path) -> None:
         WorldError: If the world has faults, the name has another ending, or the folder cannot be written to.
         PartError: If the disk fails, e.g. because it is full.
     """
-    target = Path(path)
+    target = path_of(path, "world file", WorldError)
+    if faults := kind_faults("the world", world, World, "a World"):
+        raise WorldError("world file", faults)
     if target.suffix != SUFFIX:
         raise WorldError("world file", [Fault(f"the name {target.name!r}", f"one that ends in {SUFFIX}")])
+    world = rounded(world)
     check_world(world)
     document = {"format": FORMAT, "version": VERSION, "world": _part_of(world).model_dump(exclude_defaults=True)}
     data = gzip.compress(to_json(document), compresslevel=6, mtime=0)
     try:
         _replace(target, data)
-    except (FileNotFoundError, NotADirectoryError, IsADirectoryError, PermissionError) as error:
-        what = f"{target} cannot be written: {error.strerror}"
-        raise WorldError("world file", [Fault(what, "a folder that exists and can be written to")]) from error
     except OSError as error:
-        raise PartError("disk", f"{target} could not be written: {error.strerror or error}") from error
+        raise disk_error("world file", target, error, kind=WorldError) from error
 
 
 def load_world(path: str | Path) -> World:
@@ -124,7 +128,7 @@ def load_world(path: str | Path) -> World:
         WorldError: If there is no such file, or it is broken, cut short, of another version, or holds a world with
             faults; with all faults that can be told.
     """
-    source = Path(path)
+    source = path_of(path, "world file", WorldError)
     subject = f"world file {source}"
     document = _document(source, subject)
     if not isinstance(document, dict) or document.get("format") != FORMAT:
@@ -143,7 +147,7 @@ def load_world(path: str | Path) -> World:
         raise WorldError(subject, faults) from error
     if faults := _name_faults(part):
         raise WorldError(subject, faults)
-    world = _world_of(part)
+    world = rounded(_world_of(part))
     check_world(world)
     return world
 
@@ -159,7 +163,9 @@ def _document(source: Path, subject: str) -> Any:
     except (gzip.BadGzipFile, zlib.error) as error:
         raise WorldError(subject, [Fault(f"it is broken: {error}", f"a file that ends in {SUFFIX}")]) from error
     except OSError as error:
-        raise WorldError(subject, [Fault(f"it cannot be read: {error.strerror or error}")]) from error
+        raise WorldError(
+            subject, [Fault(f"it cannot be read: {error.strerror or error}", "the path of a world file")]
+        ) from error
     if len(data) > _MOST_BYTES:
         raise WorldError(subject, [Fault("it holds over 1 GB", "a world of at most 25 km²")])
     try:
@@ -169,7 +175,7 @@ def _document(source: Path, subject: str) -> Any:
 
 
 def _replace(target: Path, data: bytes) -> None:
-    handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
+    handle, name = tempfile.mkstemp(prefix=f".{target.name[:40]}.", dir=target.parent)
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(data)
@@ -212,11 +218,11 @@ def _flats(part: _WorldPart) -> Iterable[tuple[str, _Flat]]:
 
 
 def _mm(value_m: float) -> int:
-    return math.floor(value_m * 1000.0 + 0.5)
+    return round(value_m * 1000.0)
 
 
 def _flat(points: Ring) -> _Flat:
-    whole = np.floor(np.asarray(points, dtype=np.float64) * 1000.0 + 0.5).astype(np.int64)
+    whole = np.rint(np.asarray(points, dtype=np.float64) * 1000.0).astype(np.int64)
     whole[1:] -= whole[:-1].copy()
     steps: _Flat = whole.ravel().tolist()
     return steps
@@ -278,8 +284,8 @@ def _object_part(item: WorldObject) -> _ObjectPart:
         cls=item.class_name,
         at=[_mm(item.x_m), _mm(item.y_m)],
         size=[_mm(value) for value in item.size_m],
-        heading=round(float(item.heading_rad), 6),
-        attributes=dict(sorted(item.attributes.items())),
+        heading=float(item.heading_rad),
+        attributes=dict(item.attributes),
         outline=None if item.outline is None else _flat(item.outline),
         building=item.building,
     )

@@ -10,8 +10,10 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from reasoned_explorer.model import Fault, Gathering, UnknownNameError, WorldError
+from reasoned_explorer.model import Fault, Gathering, SettingsError, UnknownNameError, WorldError
+from reasoned_explorer.model.checks import kind_faults, seed_faults
 from reasoned_explorer.registry import Registry
+from reasoned_explorer.world.rounding import rounded
 from reasoned_explorer.world.world import World
 
 WORLDS = Registry("world", "worlds", ())
@@ -65,6 +67,10 @@ def _maker_of(
     spec: str, *, seed: int, size_m: float, bbox: tuple[float, float, float, float] | None
 ) -> Callable[[], World]:
     """Return what makes a world, once all is checked that costs nothing."""
+    if faults := kind_faults("the name", spec, str, "text such as park:7 or town.osm.pbf"):
+        raise WorldError("world", faults)
+    if faults := seed_faults(seed):
+        raise SettingsError("world", faults)
     permuted = _PERMUTED.fullmatch(spec)
     if permuted is not None:
         make = _maker_of(permuted["spec"], seed=seed, size_m=size_m, bbox=bbox)
@@ -97,7 +103,7 @@ def _no_bbox(spec: str) -> WorldError:
 def _permuted(world: World, seed: int) -> World:
     from reasoned_explorer.world.permuted import permute_labels
 
-    return permute_labels(world, seed=seed)
+    return rounded(permute_labels(world, seed=seed))
 
 
 def _reader_of(path: Path, *, seed: int, bbox: tuple[float, float, float, float] | None) -> Callable[[], World]:
@@ -130,4 +136,4 @@ def _registered(name: str, seed: int, size_m: float) -> World:
     world = WORLDS.load(name)(seed=seed, size_m=size_m)
     if not isinstance(world, World):
         raise WorldError(f"world {name}", [Fault(f"its factory returned {type(world).__name__}", "a World")])
-    return world
+    return rounded(world)

@@ -22,7 +22,10 @@ from matplotlib.text import Text
 from matplotlib.transforms import IdentityTransform
 from numpy.typing import NDArray
 
+from reasoned_explorer.model.checks import is_there, is_within
+from reasoned_explorer.model.disk import disk_error
 from reasoned_explorer.model.errors import Fault, InputError
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.world.drawing_style import Palette, font, printable, set_in, width_pt
 from reasoned_explorer.world.symbols import Symbol, compound_path
 from reasoned_explorer.world.world import Bounds
@@ -279,13 +282,13 @@ def check_target(path: Path, width_px: int) -> list[Fault]:
     faults: list[Fault] = []
     if path.suffix.lower() not in SUFFIXES:
         faults.append(Fault(f"picture file {str(path)!r}", f"a name that ends in {', '.join(SUFFIXES)}"))
-    if not path.parent.is_dir():
+    if not is_there(path.parent) or not path.parent.is_dir():
         faults.append(Fault(f"folder {str(path.parent)!r} is not there", "an existing folder", "create it first"))
-    if path.is_dir():
+    if is_there(path) and path.is_dir():
         faults.append(Fault(f"{str(path)!r} is a folder", "the name of a file"))
     low, high = WIDTH_RANGE_PX
-    if not low <= width_px <= high:
-        faults.append(Fault(f"picture width {width_px}", f"{low} to {high} pixels"))
+    if not is_within(width_px, low, high):
+        faults.append(Fault(f"picture width {width_px!r}", f"{low} to {high} pixels"))
     return faults
 
 
@@ -298,7 +301,10 @@ def save(sheet: Sheet, path: Path, *, width_px: int, title: str, thanks: str, er
         width_px: Width of a PNG.
         title: Kept in the file.
         thanks: Attribution, kept in the file.
-        error: Raised, with the reason, when the file cannot be written.
+        error: Raised, with the reason, when the file cannot be written there.
+
+    Raises:
+        PartError: If the disk fails, e.g. because it is full.
     """
     suffix = path.suffix.lower()
     title, thanks = printable(title), printable(thanks)
@@ -306,9 +312,11 @@ def save(sheet: Sheet, path: Path, *, width_px: int, title: str, thanks: str, er
     metadata: dict[str, str | None] = {undated: None}
     metadata.update({key: text for key, text in (("Title", title), (thanks_key, thanks)) if text})
     picture = BytesIO()
+    stop_if_asked()
     sheet.figure.savefig(
         picture, format=suffix[1:], dpi=width_px / WIDTH_IN, metadata=metadata, facecolor=sheet.palette.paper
     )
+    stop_if_asked()
     handle, unfinished = -1, ""
     try:
         handle, unfinished = tempfile.mkstemp(prefix=f".{path.name[:40]}.", suffix=".part", dir=path.parent)
@@ -320,12 +328,7 @@ def save(sheet: Sheet, path: Path, *, width_px: int, title: str, thanks: str, er
         if unfinished:
             with suppress(OSError):
                 Path(unfinished).unlink(missing_ok=True)
-        fault = Fault(
-            f"{str(path)!r} could not be written: {reason.strerror or reason}",
-            "a folder with space in it that may be written to",
-            "choose another place",
-        )
-        raise error("map picture", [fault]) from reason
+        raise disk_error("map picture", path, reason, kind=error) from reason
 
 
 def swatch(sheet: Sheet, x_pt: float, y_pt: float, colour: str, *, hatch: str | None = None) -> None:

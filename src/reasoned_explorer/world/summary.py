@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from reasoned_explorer.model.checks import kind_faults
+from reasoned_explorer.model.errors import WorldError
 from reasoned_explorer.world.raster import GroundRaster
 from reasoned_explorer.world.taxonomy import OBJECT_CLASSES, Ground
 from reasoned_explorer.world.validation import HEIGHT_SOURCES
@@ -79,7 +81,12 @@ def summarise(world: World, ground: GroundRaster | None = None) -> WorldSummary:
     Args:
         world: The world.
         ground: Its ground where it is at hand; else it is painted.
+
+    Raises:
+        WorldError: If it is no world.
     """
+    if faults := kind_faults("the world", world, World, "a World"):
+        raise WorldError("summary", faults)
     raster = GroundRaster.of(world) if ground is None else ground
     sources = Counter(building.height_source for building in world.buildings)
     lengths_m: dict[str, float] = {}

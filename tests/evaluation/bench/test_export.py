@@ -8,7 +8,7 @@ from reasoned_explorer.evaluation.bench.export import export
 from reasoned_explorer.evaluation.bench.plan import BenchPlan
 from reasoned_explorer.evaluation.bench.runner import Workers, run_bench
 from reasoned_explorer.evaluation.bench.store import RunStore
-from reasoned_explorer.model import InputError, MissingDependencyError, RecordWriteError
+from reasoned_explorer.model import InputError, MissingDependencyError
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +43,7 @@ def test_what_cannot_be_written_leaves_nothing(
     with pytest.raises(InputError, match=r"\.csv or \.parquet"):
         export(store, tmp_path / "results.xls")
     (tmp_path / "file").write_text("")
-    with pytest.raises(RecordWriteError):
+    with pytest.raises(InputError, match="choose another place"):
         export(store, tmp_path / "file" / "results.csv")
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     with pytest.raises(MissingDependencyError, match=r"reasoned-explorer\[parquet\]"):

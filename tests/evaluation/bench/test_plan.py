@@ -29,7 +29,7 @@ def test_missions_of_a_place_come_together(small_plan: BenchPlan) -> None:
 
 def test_planners_share_seeds_and_other_seeds_are_other_missions(small_plan: BenchPlan) -> None:
     twice = replace(small_plan, seeds=(0, 7))
-    seeds = {}
+    seeds: dict[str, set[int]] = {}
     for task in twice.tasks():
         seeds.setdefault(task.mission_id, set()).add(twice.settings_of(task).seed)
     assert len(seeds) == 12

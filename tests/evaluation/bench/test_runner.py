@@ -119,6 +119,45 @@ def test_processes_end_with_their_parent(tmp_path: Path, small_plan: BenchPlan) 
     assert not any(_lives(pid) for pid in children)
 
 
+_STOPPED = """
+import sys
+from pathlib import Path
+from reasoned_explorer.evaluation.bench.runner import Workers, run_bench
+from reasoned_explorer.evaluation.bench.store import RunStore
+from reasoned_explorer.model.stopping import listening
+
+if __name__ == "__main__":
+    with listening(), RunStore.open(Path(sys.argv[1])) as store:
+        try:
+            run_bench(store, Workers(2), lambda progress: print(progress.finished, flush=True))
+        except KeyboardInterrupt:
+            print("stopped", flush=True)
+"""
+
+
+@pytest.mark.parametrize("finished", [0, 3])
+@pytest.mark.parametrize("to_all", [True, False], ids=["a terminal", "kill"])
+def test_ctrl_c_stops_a_run_and_its_processes_without_a_word(
+    finished: int, to_all: bool, tmp_path: Path, small_plan: BenchPlan
+) -> None:
+    folder, script = tmp_path / "run", tmp_path / "run.py"
+    script.write_text(_STOPPED)
+    RunStore.create(folder, replace(small_plan, seeds=tuple(range(50))), {}).close()
+    command = [sys.executable, str(script), str(folder)]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+    ) as process:
+        assert process.stdout is not None
+        for _ in range(finished + 1):
+            process.stdout.readline()
+        (os.killpg if to_all else os.kill)(process.pid, signal.SIGINT)
+        shown, errors = process.communicate(timeout=60)
+    assert shown.splitlines()[-1] == "stopped"
+    assert errors == ""
+    assert process.returncode == 0
+    assert len(rows_of(folder)) == len(shown.splitlines()) - 1 + finished
+
+
 def _lives(pid: int) -> bool:
     try:
         return "State:\tZ" not in Path(f"/proc/{pid}/status").read_text()

@@ -1,4 +1,5 @@
 import sqlite3
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -7,7 +8,7 @@ from reasoned_explorer.evaluation.bench.plan import BenchPlan
 from reasoned_explorer.evaluation.bench.runner import Workers, run_bench
 from reasoned_explorer.evaluation.bench.store import STORE_NAME, RunStore
 from reasoned_explorer.evaluation.bench.worker import run_task
-from reasoned_explorer.model import PartError, RecordError
+from reasoned_explorer.model import InputError, RecordError
 from reasoned_explorer.model.record import MissionEnd
 
 
@@ -99,12 +100,25 @@ def test_names_become_safe_names_of_files(store: RunStore) -> None:
     assert ".." not in str(path.relative_to(store.folder))
 
 
-def test_a_part_that_fails_is_a_row_and_no_exception(small_plan: BenchPlan, monkeypatch: pytest.MonkeyPatch) -> None:
-    def failing(*_: object, **__: object) -> None:
-        raise PartError("captioner", "it answers nothing")
-
-    monkeypatch.setattr("reasoned_explorer.evaluation.bench.worker.Mission", failing)
-    done = run_task(small_plan, next(small_plan.tasks()))
+def test_a_part_that_fails_is_a_row_and_no_exception(small_plan: BenchPlan) -> None:
+    # The file of a real place is gone when its turn comes.
+    split = small_plan.split
+    gone = replace(split, places=tuple(replace(place, source="gone.osm.pbf") for place in split.places))
+    done = run_task(replace(small_plan, split=gone), next(small_plan.tasks()))
     assert done.failed
     assert f'"end": "{MissionEnd.FAULT.value}"' in done.row
-    assert "it answers nothing" in done.row
+    assert "gone.osm.pbf" in done.row
+
+
+def test_more_planners_can_be_run_on_the_missions_of_a_run(store: RunStore) -> None:
+    run_bench(store, Workers())
+    before = [row.as_json() for row in store.rows()]
+    store.extend(["nearest-frontier", "random"])
+    assert store.plan.methods == ("nearest-frontier", "llm-as-eval", "random")
+    run_bench(store, Workers())
+    after = list(store.rows())
+    assert [row.as_json() for row in after if row.method != "random"] == before
+    assert sum(row.method == "random" for row in after) == 6
+    with pytest.raises(InputError, match="did you mean random"):
+        store.extend(["randon"])
+    assert store.plan.methods[-1] == "random"

@@ -5,14 +5,18 @@ import statistics
 from collections.abc import Sequence
 from itertools import product
 
-from reasoned_explorer.evaluation.bench.tables import Results, Sheet, figure, short
-from reasoned_explorer.evaluation.paper import PAPER_TABLES
+from reasoned_explorer.evaluation.bench.results import Results
+from reasoned_explorer.evaluation.bench.tables import Sheet
+from reasoned_explorer.evaluation.paper import PAPER_TABLES, PaperTable
 from reasoned_explorer.evaluation.row import MissionRow
+from reasoned_explorer.evaluation.wording import NONE, figure, share, whole
 from reasoned_explorer.model import Fault, SettingsError
 
 #: The paper's conditions: level 1 only, T_max of 15 minutes, no caption error.
 LEVELS, T_MAX_MIN, CAPTIONER = (1,), 15.0, "perfect"
 DEPTHS = (0, 1, 2, 3, 4)
+#: What the methods' names begin with: before the depth, and before the minds.
+DEPTH_METHOD, MINDS_METHOD = "llm-rrt:depth=", "llm-rrt@"
 _NOTE = (
     "σ is the standard deviation of CASR over missions; the paper does not say what its σ is taken over. Its figures "
     "are of another simulator and of GPT-3.5 and GPT-4."
@@ -28,7 +32,7 @@ def depth_methods(depths: Sequence[int] = DEPTHS) -> tuple[str, ...]:
     if not depths or len(set(depths)) < len(depths) or any(not 0 <= depth <= 16 for depth in depths):
         shown = ", ".join(map(str, depths)) or "none"
         raise SettingsError("depths", [Fault(shown, "whole numbers from 0 to 16, each once")])
-    return tuple(f"llm-rrt:depth={depth}" for depth in depths)
+    return tuple(f"{DEPTH_METHOD}{depth}" for depth in depths)
 
 
 def minds_methods(visionaries: Sequence[str], evaluators: Sequence[str]) -> tuple[str, ...]:
@@ -39,29 +43,29 @@ def minds_methods(visionaries: Sequence[str], evaluators: Sequence[str]) -> tupl
     """
     if not visionaries or not evaluators:
         raise SettingsError("minds", [Fault("no visionary or no evaluator", "at least one of each")])
-    return tuple(f"llm-rrt@{visionary}/{evaluator}" for visionary, evaluator in product(visionaries, evaluators))
+    return tuple(f"{MINDS_METHOD}{visionary}/{evaluator}" for visionary, evaluator in product(visionaries, evaluators))
 
 
 def depth_sheet(results: Results, *, title: str, notes: Sequence[str] = ()) -> Sheet:
     """Return CASR by depth, the paper's Table III beside it."""
-    theirs = dict(_paper("III"))
+    paper = _paper("III")
     lines = []
     for name in results.methods:
         table, rows = results.table(name), results.rows[name]
         if table is None:
             continue
-        depth = f"L = {name.rpartition('=')[2]}"
-        paper = theirs.get(depth)
+        depth = f"L = {name.removeprefix(DEPTH_METHOD)}"
+        theirs = paper.written(depth) if depth in dict(paper.rows) else ()
         lines.append(
             (
                 depth,
                 f"{table.count}",
                 figure(table["CASR"]),
                 figure(table["CASR per mission"]),
-                short(_spread([row.score.casr for row in rows])),
+                share(_spread([row.score.casr for row in rows])),
                 figure(table["SR"]),
-                figure(table["CT"], digits=0),
-                "–" if paper is None else f"{short(paper[0] or 0.0, 3)} ({short(paper[1] or 0.0)})",
+                figure(table["CT"], whole),
+                f"{theirs[0]} ({theirs[1]})" if theirs else NONE,
             )
         )
     head = ("depth", "missions", "CASR", "CASR per mission", "σ", "SR", "CT s", "the paper's CASR (σ)")
@@ -75,20 +79,21 @@ def minds_sheet(results: Results, *, title: str, notes: Sequence[str] = ()) -> S
         table, rows = results.table(name), results.rows[name]
         if table is None:
             continue
-        visionary, _, evaluator = name.partition("@")[2].partition("/")
+        visionary, _, evaluator = name.removeprefix(MINDS_METHOD).partition("/")
         figures = (figure(table["CASR"]), figure(table["CASR per mission"]), figure(table["SR"]))
-        lines.append((visionary, evaluator, f"{table.count}", *figures, short(_mean_score(rows))))
-    for minds, (casr,) in _paper("IV"):
+        lines.append((visionary, evaluator, f"{table.count}", *figures, share(_mean_score(rows))))
+    paper = _paper("IV")
+    for minds, (casr,) in paper.rows:
         visionary, _, evaluator = minds.partition(" + ")
-        shown = "– (left out)" if casr is None else short(casr, 3)
-        lines.append((f"the paper's {visionary}", f"the paper's {evaluator}", "–", shown, "–", "–", "–"))
+        shown = f"{NONE} (left out)" if casr is None else paper.written(minds)[0]
+        lines.append((f"the paper's {visionary}", f"the paper's {evaluator}", NONE, shown, NONE, NONE, NONE))
     head = ("visionary", "evaluator", "missions", "CASR", "CASR per mission", "SR", "mean score")
     said = "Mean score: of all answers of the evaluator, 1 to 5. In the paper GPT-3.5 was 1.86 points above GPT-4."
     return Sheet(title, head, tuple(lines), (said, *notes))
 
 
-def _paper(number: str) -> tuple[tuple[str, tuple[float | None, ...]], ...]:
-    return next(table.rows for table in PAPER_TABLES if table.number == number)
+def _paper(number: str) -> PaperTable:
+    return next(table for table in PAPER_TABLES if table.number == number)
 
 
 def _mean_score(rows: Sequence[MissionRow]) -> float:

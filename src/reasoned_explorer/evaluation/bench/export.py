@@ -2,10 +2,12 @@
 
 import csv
 import os
+from contextlib import suppress
 from pathlib import Path
 
 from reasoned_explorer.evaluation.bench.store import RunStore
-from reasoned_explorer.model import Fault, InputError, MissingDependencyError, RecordWriteError
+from reasoned_explorer.model import Fault, InputError, MissingDependencyError
+from reasoned_explorer.model.disk import disk_error
 
 FORMATS = (".csv", ".parquet")
 
@@ -16,9 +18,9 @@ def export(store: RunStore, path: Path) -> int:
     The rows are in one order and hold nothing of the machine, so that the same run gives the same CSV to the byte.
 
     Raises:
-        InputError: If the suffix is none of `FORMATS`.
+        InputError: If the suffix is none of `FORMATS`, or no file can be written there.
         MissingDependencyError: If Parquet is asked for without pyarrow.
-        RecordWriteError: If the file cannot be written.
+        PartError: If the disk fails, e.g. because it is full.
     """
     if path.suffix not in FORMATS:
         raise InputError("export", [Fault(f"{path.name}", f"a name that ends in {' or '.join(FORMATS)}")])
@@ -28,8 +30,9 @@ def export(store: RunStore, path: Path) -> int:
         count = _csv(store, half) if path.suffix == ".csv" else _parquet(store, half)
         half.replace(path)
     except OSError as error:
-        half.unlink(missing_ok=True)
-        raise RecordWriteError(f"export: {path} cannot be written: {error.strerror}") from error
+        with suppress(OSError):
+            half.unlink(missing_ok=True)
+        raise disk_error("export", path, error) from error
     return count
 
 

@@ -1,20 +1,27 @@
 """Who runs the missions of a run on this machine: this process, or several."""
 
 import os
+import signal
 import threading
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from multiprocessing import get_context, parent_process
+from multiprocessing import active_children, get_context, parent_process
+from typing import Any, TypeVar
 
 from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
 from reasoned_explorer.evaluation.bench.worker import Done, failed_row, run_task
+from reasoned_explorer.model.stopping import stop_if_asked
+
+T = TypeVar("T")
 
 #: Missions handed out ahead, a worker: enough that none waits, few enough that memory does not grow with the run.
 _AHEAD = 3
 #: A mission whose process died is tried so often; then it has failed.
 MAX_TRIES = 3
+#: While this process waits for others, it looks so often whether a person asks it to stop, seconds.
+_LOOK_EVERY_S = 0.1
 _BLAS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 _plan: BenchPlan | None = None
@@ -23,6 +30,7 @@ _plan: BenchPlan | None = None
 def run_here(plan: BenchPlan, tasks: Sequence[Task]) -> Iterator[Done]:
     """Run missions one after the other in this process."""
     for task in tasks:
+        stop_if_asked()
         yield run_task(plan, task)
 
 
@@ -57,19 +65,22 @@ def _run_pool(plan: BenchPlan, tasks: Iterator[Task], workers: int) -> Generator
     """Run missions until they are done or a process dies; return the missions that were under way when it did."""
     under_way: dict[Future[Done], Task] = {}
     broken: list[Task] = []
-    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_begin, initargs=(plan,))
-    try:
+    with _pool(workers, _begin, plan) as pool:
         while True:
             for task in tasks:
                 try:
-                    under_way[pool.submit(_run, task)] = task
+                    with _deaf():
+                        under_way[pool.submit(_run, task)] = task
                 except BrokenProcessPool:
                     broken.append(task)
                 if broken or len(under_way) >= _AHEAD * workers:
                     break
             if not under_way:
                 return broken
-            for future in wait(under_way, return_when=FIRST_COMPLETED).done:
+            while not (done := wait(under_way, timeout=_LOOK_EVERY_S, return_when=FIRST_COMPLETED).done):
+                stop_if_asked()
+            stop_if_asked()
+            for future in done:
                 task = under_way.pop(future)
                 try:
                     yield future.result()
@@ -78,8 +89,45 @@ def _run_pool(plan: BenchPlan, tasks: Iterator[Task], workers: int) -> Generator
             if broken:
                 broken += under_way.values()
                 return broken
+
+
+def map_in_processes(work: Callable[..., T], *columns: Iterable[Any], workers: int) -> list[T]:
+    """Return what `map` returns, worked out by several processes.
+
+    Raises:
+        KeyboardInterrupt: If a person asks to stop.
+    """
+    with _pool(workers) as pool:
+        with _deaf():
+            futures = [pool.submit(work, *row) for row in zip(*columns, strict=True)]
+        while wait(futures, timeout=_LOOK_EVERY_S).not_done:
+            stop_if_asked()
+        return [future.result() for future in futures]
+
+
+@contextmanager
+def _pool(workers: int, begin: Callable[..., None] | None = None, *arguments: Any) -> Iterator[ProcessPoolExecutor]:
+    """Have processes for a while; where the work is given up, they are ended in the middle of theirs."""
+    others = set(active_children())
+    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=begin, initargs=arguments)
+    try:
+        yield pool
+    except BaseException:
+        for process in set(active_children()) - others:
+            process.terminate()
+        raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
+
+
+@contextmanager
+def _deaf() -> Iterator[None]:
+    """Have processes that start now hear no Ctrl-C, which a terminal sends to all: this one ends them."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _begin(plan: BenchPlan) -> None:

@@ -1,15 +1,19 @@
 """Missions of a run on a Ray cluster: the same missions, the same rows, whichever machine runs which."""
 
 from collections.abc import Iterator, Sequence
+from importlib.util import find_spec
 from typing import Any
 
 from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
 from reasoned_explorer.evaluation.bench.pools import MAX_TRIES, lost
 from reasoned_explorer.evaluation.bench.worker import Done, run_task
 from reasoned_explorer.model import Fault, MissingDependencyError, SettingsError
+from reasoned_explorer.model.stopping import stop_if_asked
 
 #: Missions handed out ahead for each processor of the cluster.
 _AHEAD = 2
+#: So often it is looked whether a person asks to stop, seconds.
+_LOOK_EVERY_S = 0.5
 
 
 def run_on_ray(plan: BenchPlan, tasks: Sequence[Task], *, address: str, workers: int | None = None) -> Iterator[Done]:
@@ -44,7 +48,10 @@ def run_on_ray(plan: BenchPlan, tasks: Sequence[Task], *, address: str, workers:
                     break
             if not under_way:
                 return
-            ready, _ = ray.wait(list(under_way), num_returns=1)
+            ready: list[Any] = []
+            while not ready:
+                stop_if_asked()
+                ready, _ = ray.wait(list(under_way), num_returns=1, timeout=_LOOK_EVERY_S)
             for reference in ready:
                 task = under_way.pop(reference)
                 try:
@@ -56,11 +63,25 @@ def run_on_ray(plan: BenchPlan, tasks: Sequence[Task], *, address: str, workers:
             ray.shutdown()
 
 
+def require_ray() -> None:
+    """Say whether Ray is there, without the seconds that loading it takes.
+
+    Raises:
+        MissingDependencyError: If Ray is not installed.
+    """
+    if find_spec("ray") is None:
+        raise _missing()
+
+
+def _missing() -> MissingDependencyError:
+    return MissingDependencyError("--ray", "ray", "pip install 'reasoned-explorer[ray]'")
+
+
 def _ray() -> Any:
     try:
         import ray
     except ImportError as error:
-        raise MissingDependencyError("--ray", "ray", "pip install 'reasoned-explorer[ray]'") from error
+        raise _missing() from error
     return ray
 
 

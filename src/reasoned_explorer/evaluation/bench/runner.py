@@ -2,12 +2,11 @@
 
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from multiprocessing import get_context
+from functools import partial
 
 from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
-from reasoned_explorer.evaluation.bench.pools import run_here, run_in_processes
+from reasoned_explorer.evaluation.bench.pools import map_in_processes, run_here, run_in_processes
 from reasoned_explorer.evaluation.bench.store import RunStore
 from reasoned_explorer.evaluation.bench.worker import Done
 from reasoned_explorer.task.split import Place, Split
@@ -77,8 +76,8 @@ def split_of(name: str, places: tuple[Place, ...], *, per_cell: int, dealing: De
     """
     if workers == 1 or len(places) == 1:
         return make_split(name, places, per_cell=per_cell, dealing=dealing)
-    with ProcessPoolExecutor(min(workers, len(places)), mp_context=get_context("spawn")) as pool:
-        return make_split(name, places, per_cell=per_cell, dealing=dealing, map_places=pool.map)
+    map_places = partial(map_in_processes, workers=min(workers, len(places)))
+    return make_split(name, places, per_cell=per_cell, dealing=dealing, map_places=map_places)
 
 
 def run_bench(store: RunStore, workers: Workers, on_done: Callable[[BenchProgress], None] | None = None) -> None:

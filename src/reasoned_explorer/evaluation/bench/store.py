@@ -11,9 +11,9 @@ mission's key, its row as JSON, and the seconds that it took on this machine, wh
 import json
 import sqlite3
 import zlib
-from collections.abc import Iterable, Iterator
-from contextlib import closing
-from dataclasses import fields
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import closing, suppress
+from dataclasses import fields, replace
 from hashlib import blake2b
 from pathlib import Path
 from types import TracebackType
@@ -23,11 +23,14 @@ from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
 from reasoned_explorer.evaluation.record_file import parse_record
 from reasoned_explorer.evaluation.row import MissionRow
 from reasoned_explorer.evaluation.scoring import MissionScore
-from reasoned_explorer.model import Fault, RecordError, RecordWriteError
+from reasoned_explorer.model import Fault, InputError, PartError, RecordError, RecordWriteError
+from reasoned_explorer.model.disk import disk_error, in_words
 from reasoned_explorer.model.record import EpisodeRecord
 
 STORE_NAME = "run.sqlite"
 TRACES_NAME = "traces"
+#: What is wrong with a run of which nothing can be shown yet.
+NOTHING_FINISHED = Fault("no mission is finished", "at least one", "go on with rex bench --resume")
 _STORE_VERSION = 1
 _KEY = ("vehicle", "method", "mission_id")
 #: Columns of the view, from a row's JSON.
@@ -70,6 +73,7 @@ class RunStore:
 
         Raises:
             RecordError: If the folder holds a run, or cannot be written to.
+            PartError: If the disk fails, e.g. because it is full.
         """
         path = folder / STORE_NAME
         if path.exists():
@@ -91,8 +95,9 @@ class RunStore:
                 )
             half.replace(path)
         except (OSError, sqlite3.Error) as error:
-            fault = Fault(f"{path} cannot be written: {error}", "a folder that can be written to")
-            raise RecordError("run", [fault]) from error
+            with suppress(OSError):
+                half.unlink(missing_ok=True)
+            raise _write_error(path, error) from error
         return cls.open(folder)
 
     @classmethod
@@ -138,6 +143,21 @@ class RunStore:
         about: dict[str, Any] = self._fact("about")
         return about
 
+    def extend(self, methods: Sequence[str]) -> None:
+        """Have the run run more methods on its missions, after those that it has; what it has already is left alone.
+
+        Raises:
+            InputError: If a method cannot be run.
+            RecordWriteError: If the store cannot be written.
+        """
+        plan = self.plan
+        longer = replace(plan, methods=(*plan.methods, *(name for name in methods if name not in plan.methods)))
+        text = json.dumps(longer.as_dict(), sort_keys=True, ensure_ascii=False)
+        try:
+            self._connection.execute("UPDATE run SET value = ? WHERE name = 'plan'", (text,))
+        except sqlite3.Error as error:
+            raise RecordWriteError(f"run: {self.folder} cannot be written: {error}") from error
+
     def finished(self) -> set[tuple[str, str, str]]:
         """Return the keys of the missions that are finished: vehicle, method, mission id."""
         return set(self._connection.execute("SELECT vehicle, method, mission_id FROM missions"))
@@ -157,7 +177,7 @@ class RunStore:
                 half.replace(path)
             self._connection.execute("INSERT OR IGNORE INTO missions VALUES (?, ?, ?, ?, ?)", (*task.key, row, wall_s))
         except (OSError, sqlite3.Error) as error:
-            raise RecordWriteError(f"run: {self.folder} cannot be written: {error}") from error
+            raise RecordWriteError(f"run: {_in_words(self.folder, error)}") from error
 
     def rows(self, *, vehicle: str | None = None, method: str | None = None) -> Iterator[MissionRow]:
         """Return the rows, sorted by vehicle, method and mission id."""
@@ -213,6 +233,22 @@ class RunStore:
         if found is None:
             raise KeyError(name)
         return json.loads(found[0])
+
+
+def _write_error(path: Path, error: OSError | sqlite3.Error) -> InputError | PartError:
+    """Return the error to raise when a store cannot be made."""
+    if isinstance(error, OSError):
+        return disk_error("run", path, error, kind=RecordError)
+    # Extended codes have the plain one in their last byte.
+    if error.sqlite_errorcode & 0xFF in {sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR}:
+        return PartError("disk", _in_words(path, error))
+    return RecordError("run", [Fault(f"{path} cannot be written: {error}", "a folder that can be written to")])
+
+
+def _in_words(path: Path, error: OSError | sqlite3.Error) -> str:
+    if isinstance(error, OSError):
+        return in_words(path, error)
+    return f"{path} cannot be written: {error}; make room on that disk, or write to another one"
 
 
 def _plain(name: str) -> str:

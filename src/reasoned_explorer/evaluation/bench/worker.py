@@ -1,5 +1,6 @@
 """One mission of a run, wherever it is run: in this process, in another, on another machine."""
 
+import gc
 import math
 import time
 import zlib
@@ -8,12 +9,13 @@ from functools import lru_cache
 from typing import Any
 
 from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
-from reasoned_explorer.evaluation.mission import Mission, MissionResult
+from reasoned_explorer.evaluation.mission import Mission, MissionResult, judge_of
 from reasoned_explorer.evaluation.record_file import record_bytes
 from reasoned_explorer.evaluation.row import MissionRow
 from reasoned_explorer.evaluation.scoring import MissionOutcome, MissionScore, score
 from reasoned_explorer.model import ReasonedExplorerError
 from reasoned_explorer.model.record import MissionEnd, StepRecord
+from reasoned_explorer.task.judge import Judge
 from reasoned_explorer.task.split import Place, SplitEpisode
 from reasoned_explorer.task.splitting import open_place
 from reasoned_explorer.world.atlas import Atlas
@@ -52,7 +54,18 @@ class Done:
 @lru_cache(maxsize=2)
 def _atlas_of(place: Place) -> Atlas:
     # Missions of a place come together; the second is for the moment of changing over.
-    return open_place(place)
+    gc.unfreeze()
+    atlas = open_place(place)
+    gc.collect()
+    # A world has hundreds of thousands of parts and no garbage: looking through it after each mission takes 20 ms.
+    gc.freeze()
+    return atlas
+
+
+@lru_cache(maxsize=64)
+def _judge_of(place: Place, episode: str, goal: str, vehicle: str, radius_m: float) -> Judge:  # noqa: ARG001 - a key
+    """Return the judge of an episode: all methods share what it has found out about ways and sights."""
+    return judge_of(goal, _atlas_of(place), vehicle, radius_m)
 
 
 def run_task(plan: BenchPlan, task: Task) -> Done:
@@ -62,8 +75,9 @@ def run_task(plan: BenchPlan, task: Task) -> Done:
     trace = None
     try:
         settings = plan.settings_of(task)
-        atlas = _atlas_of(plan.split.place(item.place))
-        mission = Mission(item.episode.spec.text, atlas, settings, start=item.episode.start)
+        place, goal = plan.split.place(item.place), item.episode.spec.text
+        judge = _judge_of(place, item.episode.id, goal, settings.vehicle, settings.success_radius_m)
+        mission = Mission(goal, judge.atlas, settings, start=item.episode.start, judge=judge)
         result = mission.run()
     except ReasonedExplorerError as error:
         row = failed_row(plan, task, str(error))

@@ -22,8 +22,8 @@ class ReportAbout:
         attributions: Whom to thank for data, beside those that rows name.
         minds: Lines on who thinks, e.g. how embedded minds agree with GPT-4's scores.
         honesty: What a reader must know first, e.g. ``"No language model took part."``; stands under every table too.
+        posed: Lines on what the split poses, e.g. its levels and distances.
         ceilings: Of the split: what, and the figure, e.g. ``("CASR of the oracle", ".80")``.
-        interval_method: How intervals were made.
         methods: The order of the methods, the one that others are compared with first; empty for the order of the rows.
             Methods that are not named follow in the order of the rows.
         bounds: Methods that know the truth (the oracle, foresight, perfect halts): drawn in ink and left out where a
@@ -42,10 +42,8 @@ class ReportAbout:
     attributions: tuple[str, ...] = ()
     minds: tuple[str, ...] = ()
     honesty: tuple[str, ...] = ()
+    posed: tuple[str, ...] = ()
     ceilings: tuple[tuple[str, str], ...] = ()
-    interval_method: str = (
-        "Wilson's score interval for shares, percentile bootstrap over missions (2,000 resamples) for everything else"
-    )
     methods: tuple[str, ...] = ()
     bounds: tuple[str, ...] = ()
     side_by_side: tuple[str, str] | None = None

@@ -27,8 +27,10 @@ from reasoned_explorer.evaluation.report.results import (
     collisions_table,
     differences_table,
     every_level_table,
+    headroom_table,
     levels_table,
     overall_table,
+    spent_table,
 )
 from reasoned_explorer.evaluation.report.study import Study
 from reasoned_explorer.evaluation.report.trajectories import pair_of, pictures
@@ -40,7 +42,7 @@ def sections_of(study: Study, looks: dict[str, Look], traces: TraceSource | None
         Section(
             "results",
             "Results",
-            tables=(overall_table(study), levels_table(study)),
+            tables=(overall_table(study), spent_table(study), levels_table(study)),
             folded=(every_level_table(study),),
         ),
         _differences(study, looks),
@@ -75,7 +77,9 @@ def _differences(study: Study, looks: dict[str, Look]) -> Section:
     table, chart = differences_table(study), differences_chart(study, looks)
     if table is None or chart is None:
         return Section("differences", "Differences", texts=("There is nothing to compare: the run has one method.",))
-    return Section("differences", "Differences", charts=(chart,), tables=(table,))
+    headroom = headroom_table(study)
+    tables = (table,) if headroom is None else (table, headroom)
+    return Section("differences", "Differences", charts=(chart,), tables=tables)
 
 
 def _over_time(study: Study, looks: dict[str, Look]) -> tuple[Section, Section]:
@@ -118,7 +122,7 @@ def _trajectories(study: Study, traces: TraceSource | None) -> Section:
         return Section("trajectories", title, texts=("The run kept no records, so that no trajectories can be shown.",))
     drawn = tuple(pictures(study, traces))
     if not drawn:
-        return Section("trajectories", title, texts=("There is no mission with the records of both methods.",))
+        return Section("trajectories", title, texts=("No mission has the records of both methods and its world.",))
     return Section("trajectories", title, pictures=drawn)
 
 

@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 
+from reasoned_explorer.evaluation.metrics import Metric, aggregate
+from reasoned_explorer.evaluation.report.links import link
 from reasoned_explorer.evaluation.report.scores import (
     LEAST_METHODS,
     STEADY_WITHIN,
     Correlation,
-    Metric,
-    aggregate,
     at_limit,
     casr_at,
     rank_correlation,
@@ -22,7 +22,7 @@ from reasoned_explorer.evaluation.report.tables import (
     metric_cell,
     metric_record,
 )
-from reasoned_explorer.evaluation.report.wording import NONE, level_name, link, minutes, share
+from reasoned_explorer.evaluation.wording import NONE, level_name, minutes, share
 
 #: The limits that CASR is shown for, minutes; those above a run's own T_max are left out: nothing is known there.
 LIMITS_MIN = (5.0, 10.0, 15.0, 20.0, 25.0, 30.0)
@@ -56,7 +56,9 @@ def casr_curves(study: Study) -> tuple[Curve, ...]:
         where = sorted({*limits, *(limit for limit in fine if limit >= limits[0])})
         points = []
         for limit in limits:
-            table = aggregate([at_limit(item, 60.0 * limit) for item in scores], seed=study.about.seed)
+            table = aggregate(
+                [at_limit(item, 60.0 * limit) for item in scores], places=study.place_of, seed=study.about.seed
+            )
             points.append((limit, table["CASR"]))
         curves.append(
             Curve(method, tuple((limit, casr_at(scores, 60.0 * limit)) for limit in where), tuple(points)),
@@ -98,7 +100,7 @@ def radius_curves(study: Study) -> tuple[Curve, ...]:
     """Return success over R, metres."""
     curves = []
     for method in study.methods:
-        metrics = study.tables[method][None].metrics
+        metrics = study.table(method).metrics
         points = [
             (float(metric.name.removeprefix(_AT_RADIUS).removesuffix(" m")), metric)
             for metric in metrics
@@ -161,8 +163,9 @@ def relations(study: Study) -> tuple[Relation, ...]:
         scores = [
             [item for item in study.scores(method, level=level) if item.mission_id in common] for method in methods
         ]
-        seed = study.about.seed
-        casr, travel = (rank_correlation(scores, of, seed=seed) for of in ("CASR", "TT"))
+        casr, travel = (
+            rank_correlation(scores, of, places=study.place_of, seed=study.about.seed) for of in ("CASR", "TT")
+        )
         found.append(Relation(level, len(scores[0]) if scores else 0, casr, travel))
     return tuple(found)
 
@@ -236,7 +239,7 @@ def _seen(reading: str, found: tuple[Relation, ...]) -> str:
     if not shown:
         levels = ", ".join(_told(relation) for relation in known[:1])
         return f"Not shown by this run, over all levels or at any one ({levels})."
-    text = "Shown " + "; ".join(_told(relation) for relation in shown) + "."
+    text = "Shown: " + "; ".join(_told(relation) for relation in shown) + "."
     if reading == "positive":
         text += " With TT: " + "; ".join(_travel(relation) for relation in shown) + "."
     return text

@@ -5,13 +5,13 @@ from functools import partial
 
 from matplotlib.axes import Axes
 
+from reasoned_explorer.evaluation.metrics import Metric
 from reasoned_explorer.evaluation.report.charts import Chart, Panel
 from reasoned_explorer.evaluation.report.curves import Curve
 from reasoned_explorer.evaluation.report.looks import CAUSE_LOOKS, INKS, Look
 from reasoned_explorer.evaluation.report.results import collisions_of
-from reasoned_explorer.evaluation.report.scores import Metric
 from reasoned_explorer.evaluation.report.study import Study
-from reasoned_explorer.evaluation.report.wording import amount, level_name, share
+from reasoned_explorer.evaluation.wording import amount, level_name, share
 from reasoned_explorer.world.drawing_style import printable, shortened
 
 _INK, _SOFT, _GHOST, _PAPER = (INKS[name][0] for name in ("ink", "soft", "ghost", "paper"))
@@ -95,6 +95,7 @@ def _draw_differences(study: Study, looks: Looks, name: str, axes: Axes) -> None
     axes.tick_params(axis="y", length=0)
     axes.grid(visible=False, axis="y")
     axes.grid(visible=True, axis="x", color=INKS["rule"][0], linewidth=0.5)
+    axes.xaxis.set_major_formatter(lambda value, _: _tick(value))
     axes.margins(x=0.08)
 
 
@@ -102,21 +103,25 @@ def curves_chart(
     study: Study, looks: Looks, curves: Sequence[Curve], *, key: str, caption: str, axis: str, what: str
 ) -> Chart:
     """Return a figure over something, one panel a method, the others of its kind in grey behind it."""
-    kinds = [curve.method in study.bounds for curve in curves]
-    panels = []
-    for curve, kind in zip(curves, kinds, strict=True):
-        peers = [other for other, same in zip(curves, kinds, strict=True) if same == kind]
-        top = max((metric.high for peer in peers for _, metric in peer.points), default=1.0)
-        top = min(1.0, 1.08 * top) or 1.0
-        draw = partial(_draw_curve, look=looks[curve.method], curve=curve, peers=peers, top=top, axis=axis)
+    # The scale is that of the methods; what goes beyond it, as bounds do, has the whole scale.
+    own = [curve for curve in curves if curve.method not in study.bounds] or list(curves)
+    usual = min(1.0, 1.08 * max((metric.high for curve in own for _, metric in curve.points), default=1.0)) or 1.0
+    panels, beyond = [], []
+    for curve in curves:
+        fits = max((metric.high for _, metric in curve.points), default=0.0) <= usual
+        others = [other for other in curves if other.method != curve.method]
+        draw = partial(
+            _draw_curve, look=looks[curve.method], curve=curve, others=others, top=usual if fits else 1.0, axis=axis
+        )
         panels.append(Panel(curve.method, draw))
+        beyond += [] if fits else [curve.method]
     told = [
         f"{curve.method} from {share(curve.line[0][1])} at {curve.line[0][0]:g} to {share(curve.line[-1][1])} at "
         f"{curve.line[-1][0]:g}"
         for curve in curves
         if curve.line
     ]
-    scales = " Bounds, which know the truth, have a scale of their own." if any(kinds) and not all(kinds) else ""
+    scales = f" On a scale of their own: {', '.join(beyond)}." if beyond else ""
     return Chart(
         key=key,
         caption=f"{caption} In colour: the method of the panel, with 95 % intervals; in grey: the others.{scales}",
@@ -125,17 +130,15 @@ def curves_chart(
     )
 
 
-def _draw_curve(axes: Axes, *, look: Look, curve: Curve, peers: Sequence[Curve], top: float, axis: str) -> None:
-    for peer in peers:
-        if peer.method != curve.method:
-            axes.plot(*_columns(peer.line), color=_GHOST, lw=0.9)
+def _draw_curve(axes: Axes, *, look: Look, curve: Curve, others: Sequence[Curve], top: float, axis: str) -> None:
+    for other in others:
+        axes.plot(*_columns(other.line), color=_GHOST, lw=0.9)
     axes.plot(*_columns(curve.line), color=look.colour, lw=1.7, ls=look.dashes)
     for x, metric in curve.points:
         axes.plot([x, x], [metric.low, metric.high], color=look.colour, lw=1.0, alpha=0.75)
         _mark(axes, x, metric.value, look, 4.0)
     axes.set_ylim(0.0, top)
-    ticks = [tick for tick in axes.get_yticks() if 0.0 <= tick <= top + 1e-9]
-    axes.set_yticks(ticks, [f"{tick:.2f}".rstrip("0").rstrip(".").removeprefix("0") or "0" for tick in ticks])
+    _write_shares(axes, top)
     axes.set_xticks([x for x, _ in curve.points])
     axes.set_xlabel(axis)
 
@@ -158,7 +161,8 @@ def ct_casr_chart(study: Study, looks: Looks) -> Chart:
     ]
     return Chart(
         key="ct-casr",
-        caption="CT against CASR: one point a method, with 95 % intervals of both.",
+        caption="CT against CASR: one point a method, with 95 % intervals of both. Arrows: bounds that lie above the "
+        "panel, with their CASR.",
         alt="Points, one panel for all levels and for each. Over all levels: " + "; ".join(told) + ".",
         panels=(*panels, Panel("", partial(_draw_legend, study.methods, looks))),
         columns=3,
@@ -166,19 +170,50 @@ def ct_casr_chart(study: Study, looks: Looks) -> Chart:
 
 
 def _draw_ct_casr(study: Study, looks: Looks, level: int | None, axes: Axes) -> None:
-    for method in study.methods:
-        ct, casr = study.metric(method, level, "CT"), study.metric(method, level, "CASR")
-        if ct is None or casr is None:
-            continue
+    points = {
+        method: (ct, casr)
+        for method in study.methods
+        if (ct := study.metric(method, level, "CT")) and (casr := study.metric(method, level, "CASR"))
+    }
+    own = [pair for method, pair in points.items() if method not in study.bounds] or list(points.values())
+    top = min(1.0, 1.12 * max((casr.high for _, casr in own), default=1.0)) or 1.0
+    above = 0
+    for method, (ct, casr) in points.items():
         look = looks[method]
+        if casr.value > top:  # a bound, far above the others: told at the edge
+            above += 1
+            y = top * (1.0 - 0.1 * (above - 0.4))
+            _mark(axes, ct.value, y, look, 5.0)
+            axes.annotate(
+                f"{_short(method, 20)} {share(casr.value)} ↑",
+                (ct.value, y),
+                xytext=(6.0, 0.0),
+                textcoords="offset points",
+                va="center",
+                fontsize=7.0,
+                color=_SOFT,
+            )
+            continue
         axes.plot([ct.low, ct.high], [casr.value, casr.value], color=look.colour, lw=0.8, alpha=0.7)
         axes.plot([ct.value, ct.value], [casr.low, casr.high], color=look.colour, lw=0.8, alpha=0.7)
         _mark(axes, ct.value, casr.value, look, 5.0)
-    axes.set_ylim(bottom=0.0)
-    axes.set_xlim(left=0.0)
+    axes.set_ylim(0.0, top)
+    axes.set_xlim(0.0, 1.05 * max((ct.high for ct, _ in points.values()), default=1.0) or 1.0)
+    _write_shares(axes, top)
     axes.grid(visible=True, axis="x", color=INKS["rule"][0], linewidth=0.5)
     axes.set_xlabel("mean CT, s")
     axes.set_ylabel("CASR")
+
+
+def _write_shares(axes: Axes, top: float) -> None:
+    """Write the ticks of a vertical axis without leading zeros."""
+    ticks = [tick for tick in axes.get_yticks() if 0.0 <= tick <= top + 1e-9]
+    axes.set_yticks(ticks, [_tick(tick) for tick in ticks])
+
+
+def _tick(value: float) -> str:
+    text = share(value, 3).rstrip("0").rstrip(".")
+    return text if text.lstrip("−") else "0"
 
 
 def _draw_legend(methods: Sequence[str], looks: Looks, axes: Axes) -> None:
@@ -242,7 +277,7 @@ def _draw_causes(study: Study, axes: Axes) -> None:
                     left + wide / 2.0, place, str(count), ha="center", va="center", fontsize=7.0, color=look.letters
                 )
                 if look.hatch:
-                    letters.set_bbox({"facecolor": look.colour, "edgecolor": "none", "pad": 0.8})
+                    letters.set_bbox({"facecolor": look.colour, "edgecolor": "none", "pad": 1.2, "hatch": ""})
             left += wide
     for cause in study.causes:
         look = CAUSE_LOOKS[cause]
@@ -307,10 +342,13 @@ def _mark(axes: Axes, x: float, y: float, look: Look, size: float) -> None:
         ls="none",
         marker=look.marker,
         ms=size * (1.4 if look.marker == "*" else 1.0),
-        mfc=_PAPER if look.hollow else look.colour,
+        fillstyle="full" if look.fill == "none" else look.fill,
+        mfc=_PAPER if look.fill == "none" else look.colour,
+        mfcalt=_PAPER,
         mec=look.colour,
         mew=1.0,
         zorder=5,
+        clip_on=False,
     )
 
 

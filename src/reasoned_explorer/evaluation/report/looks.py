@@ -1,12 +1,13 @@
 """Colours and marks: the same for a method in every figure, told apart without seeing hue, on light ground and dark.
 
 Eight hues after Okabe & Ito (2008) and Tol (2021), each with a marker of its own. Methods made from a planner, such as
-``llm-rrt+perfect-halt`` or ``llm-rrt-echo``, keep its hue and have a hollow or smaller marker and a broken line. Bounds
-are drawn in ink.
+``llm-rrt+perfect-halt`` or ``llm-rrt-echo``, keep its hue and have a hollow or half-filled marker and a broken line.
+Bounds are drawn in ink.
 """
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 from reasoned_explorer.evaluation.report.causes import Cause
 
@@ -15,9 +16,9 @@ HUES: dict[str, tuple[str, str]] = {
     "blue": ("#0072b2", "#5aaee6"),
     "vermillion": ("#d55e00", "#f08a4b"),
     "green": ("#00855f", "#3cc49a"),
-    "amber": ("#c98a00", "#efb73e"),
+    "amber": ("#b57a00", "#efb73e"),
     "purple": ("#b5578d", "#de8fbd"),
-    "sky": ("#3a9bd1", "#8ccdf2"),
+    "sky": ("#2c8dc4", "#8ccdf2"),
     "wine": ("#882255", "#d0709c"),
     "olive": ("#7a7a2b", "#b8b85c"),
 }
@@ -48,6 +49,9 @@ _DASHES: tuple[str | tuple[int, tuple[float, ...]], ...] = (
     (0, (5, 1.5, 1.5, 1.5)),
 )
 
+Fill = Literal["full", "none", "left", "bottom", "right", "top"]
+_FILLS: tuple[Fill, ...] = ("full", "none", "left", "bottom", "right", "top")
+
 
 @dataclass(frozen=True, slots=True)
 class Look:
@@ -57,14 +61,14 @@ class Look:
         colour: ``"#rrggbb"`` on light ground.
         name: Of the colour, for the style sheet.
         marker: Of matplotlib.
-        hollow: Whether the marker is an outline.
+        fill: How the marker is filled, a fill style of matplotlib; ``"full"`` for the first method of a hue.
         dashes: A line style of matplotlib.
     """
 
     colour: str
     name: str
     marker: str
-    hollow: bool
+    fill: Fill
     dashes: str | tuple[int, tuple[float, ...]]
 
 
@@ -85,7 +89,7 @@ def looks_of(methods: Sequence[str], bounds: Collection[str]) -> dict[str, Look]
         variant = used.get(hue, 0)
         used[hue] = variant + 1
         colour, marker = (INKS["ink"][0], "*") if hue == "ink" else (HUES[hue][0], _MARKERS[list(HUES).index(hue)])
-        looks[method] = Look(colour, hue, marker, variant > 0, _DASHES[variant % len(_DASHES)])
+        looks[method] = Look(colour, hue, marker, _FILLS[variant % len(_FILLS)], _DASHES[variant % len(_DASHES)])
     return looks
 
 
@@ -107,17 +111,19 @@ class CauseLook:
     hatch: str = ""
 
 
+# Letters on colours that are the same on light ground and on dark: not the ink, which turns pale on dark ground.
+_DARK = "#1f242b"
 #: False halts are brown, time over is purple (ColorBrewer's PuOr, safe for the colour-blind); having been there is pale
 #: and hatched.
 CAUSE_LOOKS: dict[Cause, CauseLook] = {
     Cause.FOUND: CauseLook("#00785a", "#ffffff"),
-    Cause.FALSE_HALT_BEEN: CauseLook("#f1a340", "#22272e", "////"),
+    Cause.FALSE_HALT_BEEN: CauseLook("#f1a340", _DARK, "////"),
     Cause.FALSE_HALT_NEVER: CauseLook("#b35806", "#ffffff"),
-    Cause.SHUNNED_GROUND: CauseLook("#e7d4a0", "#22272e", "...."),
-    Cause.TIME_OVER_BEEN: CauseLook("#b2abd2", "#22272e", "////"),
+    Cause.SHUNNED_GROUND: CauseLook("#e7d4a0", _DARK, "...."),
+    Cause.TIME_OVER_BEEN: CauseLook("#b2abd2", _DARK, "////"),
     Cause.TIME_OVER_NEVER: CauseLook("#542788", "#ffffff"),
     Cause.BUDGET: CauseLook("#5b6068", "#ffffff"),
-    Cause.NOTHING_LEFT: CauseLook("#9aa0a6", "#22272e", "\\\\\\\\"),
+    Cause.NOTHING_LEFT: CauseLook("#9aa0a6", _DARK, "\\\\\\\\"),
     Cause.FAULT: CauseLook("#3b3f46", "#ffffff", "xxxx"),
-    Cause.INTERRUPTED: CauseLook("#d0d3d6", "#22272e"),
+    Cause.INTERRUPTED: CauseLook("#d0d3d6", _DARK),
 }

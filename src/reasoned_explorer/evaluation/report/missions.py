@@ -7,10 +7,11 @@ from dataclasses import asdict, fields
 
 from reasoned_explorer.evaluation.report.causes import Cause
 from reasoned_explorer.evaluation.report.curves import LIMITS_MIN
-from reasoned_explorer.evaluation.report.scores import MissionScore, at_limit
+from reasoned_explorer.evaluation.report.scores import at_limit
 from reasoned_explorer.evaluation.report.study import Entry, Study
 from reasoned_explorer.evaluation.report.tables import Value
 from reasoned_explorer.evaluation.row import MissionRow
+from reasoned_explorer.evaluation.scoring import MissionScore
 
 
 class _Words:
@@ -51,6 +52,7 @@ def missions_json(study: Study) -> str:
                 causes.place(entry.cause),
                 int(score.success),
                 int(score.oracle_success),
+                int(score.oracle_seen),
                 _mask(hits.get(radius_m, False) for radius_m in radii),
                 _mask(within),
                 round(score.spl, 3),

@@ -3,8 +3,8 @@
 (() => {
   const PIECE = 200;
   const data = JSON.parse(document.getElementById("missions-data").textContent);
-  const [METHOD, ID, LEVEL, PLACE, CITY, GOAL, CAUSE, SUCCESS, ORACLE, RADII, WITHIN, SPL, CASR, CT, TT, PATH, SHORTEST,
-    STEPS, CALLS, SMALL, LARGE, JUDGE, REASON] = Array.from({ length: 23 }, (_, place) => place);
+  const [METHOD, ID, LEVEL, PLACE, CITY, GOAL, CAUSE, SUCCESS, ORACLE, SEEN, RADII, WITHIN, SPL, CASR, CT, TT, PATH, SHORTEST,
+    STEPS, CALLS, SMALL, LARGE, JUDGE, REASON] = Array.from({ length: 24 }, (_, place) => place);
   const form = document.getElementById("filters");
   const body = document.querySelector("#list tbody");
   const status = document.getElementById("status");
@@ -12,6 +12,7 @@
   const outcomes = new Map([
     ["success", ["success", (row) => row[SUCCESS] === 1]],
     ["oracle", ["oracle success", (row) => row[ORACLE] === 1]],
+    ["seen", ["oracle success, seen", (row) => row[SEEN] === 1]],
     ["small", ["ran into something small", (row) => row[SMALL] > 0]],
     ["large", ["ran into something large", (row) => row[LARGE] > 0]],
     ...data.causes.map(([key, name], place) => [key, [name, (row) => row[CAUSE] === place]]),

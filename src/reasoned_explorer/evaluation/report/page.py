@@ -13,12 +13,12 @@ from markupsafe import Markup
 from reasoned_explorer.evaluation.paper import PAPER_NOTE, PAPER_SOURCE
 from reasoned_explorer.evaluation.report.charts import Chart, svg_panels
 from reasoned_explorer.evaluation.report.curves import Observation, limit_text
+from reasoned_explorer.evaluation.report.links import link
 from reasoned_explorer.evaluation.report.looks import HUES, INKS, Look
 from reasoned_explorer.evaluation.report.missions import missions_json
 from reasoned_explorer.evaluation.report.study import Study
 from reasoned_explorer.evaluation.report.tables import Table
 from reasoned_explorer.evaluation.report.trajectories import Picture
-from reasoned_explorer.evaluation.report.wording import link
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -124,7 +124,7 @@ def _facts(study: Study) -> list[tuple[str, str]]:
         ("missions", f"{len(rows):,}"),
         ("methods", f"{len(study.methods)}, {spread} missions each"),
         ("levels", ", ".join(str(level) for level in study.levels)),
-        ("places", f"{len(study.places):,} in {said(study.cities) or 'no city'}"),
+        ("places", f"{len(study.places):,}: {said(study.cities) or 'no city'}"),
         ("T_max", limit_text(study)),
         ("vehicle", said([row.score.vehicle for row in rows])),
         ("captions", said([row.captioner for row in rows])),
@@ -138,6 +138,7 @@ def _methods(study: Study) -> list[tuple[str, str, str]]:
     found = []
     for method in study.methods:
         rows = [entry.row for entry in study.of(method)]
-        planners, minds = (", ".join(sorted({getattr(row, name) for row in rows})) for name in ("planner", "minds"))
-        found.append((method, planners, minds))
+        # The minds behind a planner's name stand in a column of their own.
+        planners = sorted({row.planner.partition(" [")[0] for row in rows})
+        found.append((method, ", ".join(planners), ", ".join(sorted({row.minds for row in rows}))))
     return found

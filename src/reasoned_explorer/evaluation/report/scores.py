@@ -1,7 +1,4 @@
-"""What the report computes beyond the metrics of `evaluation.metrics`, and its one door to them.
-
-All other modules of the report import metrics from here.
-"""
+"""What the report computes beyond the figures of `evaluation.metrics`: other limits, and ranks of methods."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -9,37 +6,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from reasoned_explorer.evaluation.metrics import (
-    RESAMPLES,
-    Metric,
-    MetricTable,
-    MissionScore,
-    aggregate,
-    by_level,
-    compare,
-)
-from reasoned_explorer.model.draws import key_of
-
-__all__ = [
-    "Correlation",
-    "Metric",
-    "MetricTable",
-    "MissionScore",
-    "aggregate",
-    "at_limit",
-    "by_level",
-    "casr_at",
-    "compare",
-    "elapsed_s",
-    "mean_of",
-    "rank_correlation",
-]
+from reasoned_explorer.evaluation.metrics import Metric, Places
+from reasoned_explorer.evaluation.scoring import MissionScore
+from reasoned_explorer.evaluation.statistics import bootstrap_means, drawn_groups, percentile_interval
 
 Floats = NDArray[np.float64]
 
 #: As in `evaluation.metrics`: what rounding may add to a sum of seconds.
 _TIME_SLACK_S = 1e-6
-CONFIDENCE = 0.95
 
 
 def elapsed_s(score: MissionScore) -> float:
@@ -75,14 +49,6 @@ def casr_at(scores: Sequence[MissionScore], limit_s: float) -> float:
     return float(np.mean([item.success for item in cut]) * np.mean([item.time_factor for item in cut]))
 
 
-def mean_of(name: str, values: Sequence[float], *, seed: int) -> Metric:
-    """Return the mean of values, one a mission, with a bootstrap interval over missions."""
-    column = np.sort(np.asarray(values, dtype=np.float64))  # one order whatever order they come in
-    means = np.mean(column[_draws(len(column), seed)], axis=1)
-    low, high = _ends(means)
-    return Metric(name, float(np.mean(column)), low, high, len(column), "bootstrap")
-
-
 class Correlation(Metric):
     """Spearman's rank correlation between methods; ``count`` is the number of methods."""
 
@@ -109,15 +75,19 @@ STEADY_WITHIN = 0.3
 LEAST_METHODS = 4
 
 
-def rank_correlation(methods: Sequence[Sequence[MissionScore]], of: str, *, seed: int) -> Correlation | None:
+def rank_correlation(
+    methods: Sequence[Sequence[MissionScore]], of: str, *, places: Places | None = None, seed: int
+) -> Correlation | None:
     """Return Spearman's rank correlation of mean CT with CASR or with mean TT over methods.
 
-    The interval is of missions, not of methods: the missions are drawn anew, the same for all methods, and the ranks
-    of the methods are taken again (percentile bootstrap). A draw in which all methods tie counts as 0.
+    The interval is of missions, not of methods: places are drawn anew, each with all its missions and the same for all
+    methods, and the ranks of the methods are taken again (percentile bootstrap). A draw in which all methods tie counts
+    as 0.
 
     Args:
         methods: For each method its scores, the same missions in the same order.
         of: ``"CASR"`` or ``"TT"``.
+        places: Where each mission took place, by its id; None where missions are independent.
         seed: Of the bootstrap.
 
     Returns:
@@ -125,23 +95,21 @@ def rank_correlation(methods: Sequence[Sequence[MissionScore]], of: str, *, seed
     """
     if len(methods) < LEAST_METHODS or not methods[0]:
         return None
-    draws = np.vstack([np.arange(len(methods[0])), _draws(len(methods[0]), seed)])
+    groups, interval = drawn_groups([item.mission_id for item in methods[0]], places)
     first, second = [], []
     for scores in methods:
-        ct_s = np.asarray([item.computing_s for item in scores])
-        first.append(np.mean(ct_s[draws], axis=1))
-        if of == "TT":
-            tt_s = np.asarray([item.travelling_s for item in scores])
-            second.append(np.mean(tt_s[draws], axis=1))
-            continue
-        success = np.asarray([item.success for item in scores], dtype=np.float64)
-        factor = np.asarray([item.time_factor for item in scores])
-        second.append(np.mean(success[draws], axis=1) * np.mean(factor[draws], axis=1))
-    drawn = _spearman(np.asarray(first), np.asarray(second))
-    if np.isnan(drawn[0]):
+        columns = np.asarray(
+            [[item.computing_s, item.travelling_s, float(item.success), item.time_factor] for item in scores]
+        )
+        whole, drawn = bootstrap_means(columns, groups, seed=seed)
+        ct_s, tt_s, success, factor = np.vstack([whole, drawn]).T
+        first.append(ct_s)
+        second.append(tt_s if of == "TT" else success * factor)
+    ranked = _spearman(np.asarray(first), np.asarray(second))
+    if np.isnan(ranked[0]):
         return None
-    low, high = _ends(np.nan_to_num(drawn[1:], nan=0.0))
-    return Correlation(f"ρ(CT, {of})", float(drawn[0]), low, high, len(methods), "bootstrap")
+    low, high = percentile_interval(np.nan_to_num(ranked[1:], nan=0.0))
+    return Correlation(f"ρ(CT, {of})", float(ranked[0]), low, high, len(methods), interval)
 
 
 def _spearman(first: Floats, second: Floats) -> Floats:
@@ -155,14 +123,3 @@ def _spearman(first: Floats, second: Floats) -> Floats:
     scale = np.sqrt((centred[0] ** 2).sum(axis=0) * (centred[1] ** 2).sum(axis=0))
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.asarray(np.where(scale > 0.0, (centred[0] * centred[1]).sum(axis=0) / scale, np.nan))
-
-
-def _draws(count: int, seed: int) -> NDArray[np.int64]:
-    bulk = np.random.Generator(np.random.PCG64(key_of(seed, "report", count)))
-    return bulk.integers(0, count, size=(RESAMPLES, count))
-
-
-def _ends(resampled: Floats) -> tuple[float, float]:
-    tail = 50.0 * (1.0 - CONFIDENCE)
-    low, high = (float(value) for value in np.percentile(resampled, [tail, 100.0 - tail]))
-    return low, high

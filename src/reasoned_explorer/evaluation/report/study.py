@@ -5,10 +5,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from reasoned_explorer.evaluation.bench.results import Results, places_of
+from reasoned_explorer.evaluation.metrics import Metric, MetricTable
 from reasoned_explorer.evaluation.report.about import ReportAbout
 from reasoned_explorer.evaluation.report.causes import Cause, cause_of
-from reasoned_explorer.evaluation.report.scores import Metric, MetricTable, MissionScore, by_level, compare
 from reasoned_explorer.evaluation.row import MissionRow
+from reasoned_explorer.evaluation.scoring import MissionScore
+from reasoned_explorer.evaluation.statistics import RESAMPLES
 from reasoned_explorer.model import Fault, InputError
 
 
@@ -81,9 +84,14 @@ class Study:
             Entry(row, name, cause_of(row))
             for name, row in sorted(named, key=lambda pair: (place[pair[0]], pair[1].mission_id))
         )
-        self.levels = tuple(sorted({row.level for row in rows}))
         self.places = tuple(sorted({row.place for row in rows}))
-        self.cities = tuple(sorted({row.city for row in rows}))
+        self.results = Results(
+            {name: [entry.row for entry in mine] for name, mine in self._by_method.items()}, seed=about.seed
+        )
+        self.levels = self.results.levels
+        self.cities = self.results.cities
+        #: Where each mission took place.
+        self.place_of = places_of(rows)
 
     def of(
         self, method: str, *, level: int | None = None, city: str | None = None, cause: Cause | None = None
@@ -101,20 +109,22 @@ class Study:
         """Return a method's scores, by mission id."""
         return [entry.score for entry in self.of(method, level=level)]
 
+    def table(self, method: str) -> MetricTable:
+        """Return a method's figures over all levels."""
+        table = self.results.table(method)
+        if table is None:  # a method without a row is none
+            raise AssertionError
+        return table
+
     def metric(self, method: str, level: int | None, name: str) -> Metric | None:
         """Return a figure of a method at a level (None: all of them); None where it has no mission there."""
-        table = self.tables[method].get(level)
-        if table is None:
-            return None
-        try:
-            return table[name]
-        except KeyError:
-            return None
+        table = self.results.table(method, level)
+        return None if table is None else next((metric for metric in table.metrics if metric.name == name), None)
 
-    @cached_property
-    def tables(self) -> dict[str, dict[int | None, MetricTable]]:
-        """Metrics of each method by level; None is all levels."""
-        return {method: by_level(self.scores(method), seed=self.about.seed) for method in self.methods}
+    def fellow(self, method: str, name: str) -> str | None:
+        """Return the name of a method of the store with the vehicle of another one; None where it was not run."""
+        vehicle = self.vehicle[method]
+        return next((each for each in self.methods if (self.stored[each], self.vehicle[each]) == (name, vehicle)), None)
 
     @cached_property
     def differences(self) -> tuple[Difference, ...]:
@@ -122,15 +132,27 @@ class Study:
         found = []
         for method in self.methods:
             base = next(name for name in self.methods if self.vehicle[name] == self.vehicle[method])
-            common = self.common([base, method])
-            if method == base or not common:
+            limits_s = {self.of(name)[0].score.time_limit_s for name in (method, base)}
+            if method == base or len(limits_s) > 1:
                 continue
-            ours, theirs = (
-                [item for item in self.scores(name) if item.mission_id in common] for name in (method, base)
-            )
-            if ours[0].time_limit_s == theirs[0].time_limit_s:
-                found.append(Difference(method, base, compare(ours, theirs, seed=self.about.seed)))
+            table = self.results.difference(method, base)
+            if table is not None:
+                found.append(Difference(method, base, table))
         return tuple(found)
+
+    @property
+    def interval_method(self) -> str:
+        """How intervals were made, in words."""
+        if len(self.places) < 2:
+            return (
+                f"Wilson’s score interval for shares, percentile bootstrap over missions ({RESAMPLES:,} resamples) for "
+                "everything else; there is one place only, and its missions are taken for independent"
+            )
+        return (
+            f"percentile bootstrap clustered by place ({RESAMPLES:,} resamples of the {len(self.places):,} places, "
+            "each with all its missions); shares that never vary have Wilson’s score interval. With few places such "
+            "intervals are too narrow: read p, and docs/metrics.md of the package"
+        )
 
     def common(self, methods: Sequence[str]) -> set[str]:
         """Return the ids of the missions that all of some methods have."""

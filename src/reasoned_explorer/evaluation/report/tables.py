@@ -1,10 +1,10 @@
 """What a table of the report is: cells with intervals and links for the page, plain records for the file."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
-from reasoned_explorer.evaluation.report.scores import Metric
-from reasoned_explorer.evaluation.report.wording import NONE
+from reasoned_explorer.evaluation.metrics import Metric
+from reasoned_explorer.evaluation.wording import NONE, ends
 
 #: A value of a file: text, a number in full, or nothing.
 Value = str | int | float | None
@@ -29,11 +29,19 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One line of a table: its name and its cells. ``mark`` is the method whose colour it carries, or empty."""
+    """One line of a table.
+
+    Attributes:
+        name: Of the line.
+        cells: Its figures.
+        mark: The method whose colour it carries, or empty.
+        label: What a reader must know of it, under its name; may be empty.
+    """
 
     name: str
     cells: tuple[Cell, ...]
     mark: str = ""
+    label: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +74,12 @@ class Table:
     spans: tuple[tuple[str, int], ...] = ()
     note: str = ""
     head: tuple[str, ...] = ()
-    records: tuple[tuple[Value, ...], ...] = field(default=())
+    records: tuple[tuple[Value, ...], ...] = ()
+
+    @property
+    def starts(self) -> frozenset[int]:
+        """The places of the columns at which a head above the heads begins."""
+        return frozenset(1 + sum(count for _, count in self.spans[:place]) for place in range(len(self.spans)))
 
 
 #: Heads of the files that list metrics.
@@ -79,8 +92,7 @@ def metric_cell(
     """Return the cell of a figure; without a figure it is a dash that leads nowhere."""
     if metric is None or metric.count == 0:
         return Cell(NONE)
-    ends = f"[{write(metric.low)}, {write(metric.high)}]" if interval else ""
-    return Cell(write(metric.value), ends, href, about)
+    return Cell(write(metric.value), ends(metric, write) if interval else "", href, about)
 
 
 def metric_record(first: Sequence[Value], metric: Metric | None) -> list[tuple[Value, ...]]:

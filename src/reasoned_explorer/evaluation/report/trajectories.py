@@ -12,7 +12,7 @@ from reasoned_explorer.evaluation.mission_panel import MARGIN_PT, legend_entries
 from reasoned_explorer.evaluation.record_map import trace_of
 from reasoned_explorer.evaluation.report.about import TraceSource
 from reasoned_explorer.evaluation.report.study import Entry, Study
-from reasoned_explorer.evaluation.report.wording import amount, share
+from reasoned_explorer.evaluation.wording import amount, share
 from reasoned_explorer.world.drawing import fitted_bounds
 from reasoned_explorer.world.drawing_style import Palette, wrapped
 from reasoned_explorer.world.lettering import Room, letter_streets, place_badges

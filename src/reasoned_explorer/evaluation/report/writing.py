@@ -19,6 +19,7 @@ from reasoned_explorer.evaluation.report.study import Study
 from reasoned_explorer.evaluation.report.tables import Table, Value
 from reasoned_explorer.evaluation.row import MissionRow
 from reasoned_explorer.model import Fault, RecordError
+from reasoned_explorer.model.disk import disk_error
 
 PAGE_NAME = "index.html"
 
@@ -43,6 +44,7 @@ def write_report(
     Raises:
         InputError: If the rows cannot be a report: none, a mission twice, two T_max in one method, an unknown end.
         RecordError: If the folder is none of a report or cannot be written; what was there stays.
+        PartError: If the disk fails, e.g. because it is full; likewise.
     """
     study = Study(rows, about)
     _check_target(folder)
@@ -58,11 +60,7 @@ def write_report(
     try:
         _replace_folder(folder, contents)
     except OSError as error:
-        fault = Fault(
-            f"{str(folder)!r} could not be written: {error.strerror or error}",
-            "a folder with space in it that may be written to",
-        )
-        raise RecordError("report", [fault]) from error
+        raise disk_error("report", folder, error, kind=RecordError) from error
     return folder / PAGE_NAME
 
 
@@ -82,15 +80,24 @@ def _check_target(folder: Path) -> None:
     """Refuse to replace what is no report.
 
     Raises:
-        RecordError: If the folder is a file, or holds something and no page of ours.
+        RecordError: If the folder is a file, holds something and no page of ours, or cannot be made.
     """
-    if folder.is_dir() and (not any(folder.iterdir()) or (folder / PAGE_NAME).is_file()):
+    if folder.is_dir() and (not any(folder.iterdir()) or _is_ours(folder / PAGE_NAME)):
         return
     if folder.exists() or folder.is_symlink():
-        fault = Fault(
-            f"{str(folder)!r} is there and is no report", "a new folder, or one with a report", "name another"
-        )
+        fault = Fault(f"{folder} is there and is no report", "a new folder, or one with a report", "name another")
         raise RecordError("report", [fault])
+    above = next(parent for parent in folder.absolute().parents if parent.exists())
+    if not (above.is_dir() and os.access(above, os.W_OK | os.X_OK)):
+        raise RecordError("report", [Fault(f"{folder} cannot be made in {above}", "a folder that may be written to")])
+
+
+def _is_ours(page: Path) -> bool:
+    """Return whether a page says that it was made here: somebody's web site is not replaced."""
+    if not page.is_file():
+        return False
+    with page.open("rb") as file:
+        return b'<meta name="generator" content="reasoned-explorer' in file.read(4096)
 
 
 def _replace_folder(folder: Path, contents: dict[str, bytes]) -> None:
@@ -115,6 +122,7 @@ def _replace_folder(folder: Path, contents: dict[str, bytes]) -> None:
             if old.exists():
                 old.rename(folder)
             raise
-    finally:
+    except BaseException:
         shutil.rmtree(made, ignore_errors=True)
-        shutil.rmtree(old, ignore_errors=True)
+        raise
+    shutil.rmtree(old, ignore_errors=True)

@@ -3,11 +3,11 @@
 `generate_world` is all that is needed; what it uses is loaded when it is first called.
 """
 
-import math
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from reasoned_explorer.model.checks import is_within, seed_faults
 from reasoned_explorer.model.errors import Fault, SettingsError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -61,13 +61,11 @@ def check_request(district: str, *, seed: int, size_m: float) -> None:
         SettingsError: Likewise.
     """
     faults: list[Fault] = []
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        faults.append(Fault(f"seed {seed!r}", "a whole number from 0 on"))
+    faults += seed_faults(seed)
     low, high = SIZE_RANGE_M
-    numeric = isinstance(size_m, int | float) and not isinstance(size_m, bool)
-    if not numeric or not math.isfinite(size_m) or not low <= size_m <= high:
+    if not is_within(size_m, low, high):
         faults.append(Fault(f"size {size_m!r}", f"a length from {low:g} to {high:g} metres"))
-    if district not in DISTRICTS:
+    if not isinstance(district, str) or district not in DISTRICTS:
         unknown = UnknownNameError("district", str(district), tuple(DISTRICTS))
         if not faults:
             raise unknown

@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.world.generator.affinity import Pull, Statistics
 from reasoned_explorer.world.generator.assemble import buildings_of, ground_of, regions_of, rings_of, ways_of
 from reasoned_explorer.world.generator.furniture import Furnisher, Thing, standing_size
@@ -18,6 +19,7 @@ from reasoned_explorer.world.generator.sketch import Sketch, Zone
 from reasoned_explorer.world.generator.streets import add_crossings
 from reasoned_explorer.world.generator.town import fill_district, fill_town
 from reasoned_explorer.world.generator.traffic import park_cars
+from reasoned_explorer.world.rounding import rounded
 from reasoned_explorer.world.taxonomy import OBJECT_CLASSES, Ground
 from reasoned_explorer.world.world import Bounds, Building, World, WorldObject
 
@@ -52,6 +54,7 @@ def build_world(district: str, *, seed: int, size_m: float, statistics: Statisti
         [item.area for item in sketch.footprints],
         sketch.box,
     )
+    stop_if_asked()
     sites = find_sites(sketch, plan, crossings)
     furnisher = Furnisher(sketch, plan, sites, statistics=statistics, pull=pull or Pull())
     _stand_areas(sketch, furnisher)
@@ -62,15 +65,17 @@ def build_world(district: str, *, seed: int, size_m: float, statistics: Statisti
     trees, crowns = plant_trees(sketch, plan)
     _stand_bulk(sketch, furnisher, "tree", trees, headings=np.zeros(len(trees)), widths=crowns)
     _stand_hosts(sketch, furnisher)
+    stop_if_asked()
     furnisher.furnish()
+    stop_if_asked()
     bushes, widths = plant_bushes(sketch, plan)
     _stand_bulk(sketch, furnisher, "shrub", bushes, headings=np.zeros(len(bushes)), widths=widths)
     objects = tuple(
         WorldObject(
             id=index,
             class_name=thing.class_name,
-            x_m=round(thing.x_m, 3),
-            y_m=round(thing.y_m, 3),
+            x_m=thing.x_m,
+            y_m=thing.y_m,
             heading_rad=round(thing.heading_rad, 5),
             size_m=thing.size_m,
             attributes=thing.attributes or {},
@@ -81,7 +86,7 @@ def build_world(district: str, *, seed: int, size_m: float, statistics: Statisti
     )
     buildings = _with_entrances(sketch, plan, sites, furnisher.things)
     size = f"{size_m:g}"
-    return World(
+    world = World(
         name=f"{district}:{seed}@{size}",
         bounds=Bounds(-half, -half, half, half),
         regions=regions_of(ground),
@@ -91,6 +96,7 @@ def build_world(district: str, *, seed: int, size_m: float, statistics: Statisti
         source=f"generated {district} seed={seed} size={size}",
         seed=seed,
     )
+    return rounded(world)
 
 
 def _zone(district: str) -> Zone:

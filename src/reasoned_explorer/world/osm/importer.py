@@ -11,6 +11,8 @@ import shapely
 
 from reasoned_explorer.geometry import GeoOrigin
 from reasoned_explorer.model import Fault, Gathering, WorldError
+from reasoned_explorer.model.checks import kind_faults, path_of, seed_faults
+from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.world.osm.buildings import buildings_of
 from reasoned_explorer.world.osm.features import features_of
 from reasoned_explorer.world.osm.furniture import objects_of
@@ -18,6 +20,7 @@ from reasoned_explorer.world.osm.paths import PathIndex
 from reasoned_explorer.world.osm.reading import BoxDeg, Extract, check_file, read_extract
 from reasoned_explorer.world.osm.surfaces import passages_of, regions_of, ways_of
 from reasoned_explorer.world.osm.tags import class_of
+from reasoned_explorer.world.rounding import rounded
 from reasoned_explorer.world.world import Bounds, World
 
 #: Whom to thank wherever a picture or a figure of an imported world is shown.
@@ -62,6 +65,7 @@ def import_osm(
 
     Raises:
         WorldError: The file or the bbox cannot be used, or the area is larger than 25 km².
+        KeyboardInterrupt: A person asked to stop.
     """
     return import_osm_with_report(path, bbox=bbox, seed=seed, name=name)[0]
 
@@ -70,9 +74,13 @@ def import_osm_with_report(
     path: str | PathLike[str], *, bbox: BoxDeg | None = None, seed: int = 0, name: str | None = None
 ) -> tuple[World, ImportReport]:
     """Import a world as `import_osm` does, and say what was made of the file and what was lost."""
-    file = Path(path)
+    file = path_of(path, "OpenStreetMap file", WorldError)
+    faults = seed_faults(seed) + kind_faults("name", name, (str, type(None)), "text, or None")
+    if faults:
+        raise WorldError("import", faults)
     bbox = check_source(file, bbox=bbox)
     extract = read_extract(file, box_deg=bbox)
+    stop_if_asked()
     warnings: list[str] = []
     if bbox is None:
         bbox = _whole(extract, file, warnings)
@@ -84,9 +92,12 @@ def import_osm_with_report(
             [Fault(f"nothing in {file.name} lies within {_show(bbox)}", "a bbox that the file covers",
                    f"the file covers {_show(extract.header_box_deg)}" if extract.header_box_deg else "check the bbox")],
         )  # fmt: skip
+    stop_if_asked()
     buildings = buildings_of(features.areas, features.points, passages_of(features.lines), bounds, seed=seed)
+    stop_if_asked()
     ways = ways_of(features.lines, features.points, bounds)
     regions, region_counts = regions_of(features.areas, features.lines, buildings.courtyards, bounds)
+    stop_if_asked()
     placed = objects_of(
         features.points, features.lines, features.areas,
         buildings=buildings, paths=PathIndex(ways), bounds=bounds, seed=seed,
@@ -112,7 +123,7 @@ def import_osm_with_report(
         warnings.append(f"{region_counts['loose ends of coastline']} loose ends of coastline led to the nearest edge")
     if region_counts["stretches of unclear coast"]:
         warnings.append("the coastline is broken; check where the sea is")
-    return world, ImportReport(bbox, extract.newest_edit, counts, tuple(warnings))
+    return rounded(world), ImportReport(bbox, extract.newest_edit, counts, tuple(warnings))
 
 
 def check_source(path: Path, *, bbox: BoxDeg | None = None) -> BoxDeg | None:

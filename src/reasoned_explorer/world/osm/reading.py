@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from osmium.filter import EmptyTagFilter, TagFilter
 
 from reasoned_explorer.model import Fault, WorldError
+from reasoned_explorer.model.checks import is_there
 
 BoxDeg = tuple[float, float, float, float]
 _SUFFIXES = (".osm", ".osm.gz", ".osm.bz2", ".osm.pbf", ".pbf")
@@ -219,7 +220,7 @@ def check_file(path: Path) -> None:
     Raises:
         WorldError: There is none.
     """
-    if not path.exists():
+    if not is_there(path):
         fault = Fault(f"there is no file {path}", _EXPECTED, "check the path")
     elif path.is_dir():
         fault = Fault(f"{path} is a directory", _EXPECTED, "name the file in it")
