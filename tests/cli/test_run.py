@@ -139,6 +139,16 @@ def test_everything_that_is_wrong_is_told_at_once_and_before_a_world_is_made(mon
         assert word in shown
 
 
+def test_where_a_goal_is_everywhere_the_farthest_start_is_taken_and_said(tmp_path: Path) -> None:
+    goal = ["run", "Find me a tree", "--world", "park:7@200", "--planner", "nearest-frontier", "--no-map"]
+    code, shown = _rex(*goal, "--out", "run")
+    assert code in {0, 1}, shown
+    assert "this is the farthest found" in " ".join(shown.split())
+    assert "note" in _rex("show", "run")[1]
+    _, quiet = _rex(*goal, "--out", "quiet", "-q")
+    assert "this is the farthest found" in " ".join(quiet.split())
+
+
 def test_near_misses_are_named() -> None:
     assert "did you mean llm-rrt" in _rex("run", "Find me a bench", "--planner", "llm-rtt")[1]
     assert "park" in _rex("run", "Find me a bench", "--world", "prak:7")[1]

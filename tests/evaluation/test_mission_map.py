@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from matplotlib.collections import PathCollection
 from matplotlib.text import Text
 
 from reasoned_explorer.evaluation.mission_map import (
@@ -18,12 +19,22 @@ from reasoned_explorer.evaluation.mission_map import (
     compose_mission,
     draw_mission,
     happened_in,
+    moved_into,
 )
-from reasoned_explorer.evaluation.mission_marks import arc_path, score_colour, turned, verdict
+from reasoned_explorer.evaluation.mission_marks import STAR, arc_path, score_colour, turned, verdict
+from reasoned_explorer.evaluation.mission_signs import (
+    HALT_PT,
+    STEP_PT,
+    TRACK_PT,
+    halt_place,
+    is_on_the_way,
+    stands_on_a_step,
+)
 from reasoned_explorer.evaluation.mission_trace import FRONTIER_STATES
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model.errors import PartError, RecordError
-from reasoned_explorer.world.sheet import plain_settings
+from reasoned_explorer.world.painting import Board
+from reasoned_explorer.world.sheet import WIDTH_PT, Sheet, plain_settings
 from reasoned_explorer.world.taxonomy import Ground
 from reasoned_explorer.world.world import Bounds, Building, Region, Way, World, WorldObject
 
@@ -188,6 +199,76 @@ def test_everything_that_happened_is_in_sight(points: list[tuple[float, float]])
     shown = happened_in(mission(track=np.array(points), path_points=tuple(points)))
     assert all(shown.contains(x, y) for x, y in points)
     assert shown.contains(80.0 + 15.0, 5.0), "the goal that was reached, with its halo"
+
+
+def shown_on(world: World, trace: MissionTrace) -> tuple[Sheet, Board]:
+    with plain_settings():
+        sheet = compose_mission(world, trace)
+    (axes,) = (each for each in sheet.figure.axes if each is not sheet.page)
+    (west, east), (south, north) = axes.get_xlim(), axes.get_ylim()
+    width_pt = axes.get_position().width * WIDTH_PT
+    return sheet, Board(axes, Bounds(west, south, east, north), (east - west) / width_pt, sheet.palette)
+
+
+@pytest.mark.parametrize("corner", [(0.0, 0.0), (200.0, 200.0), (-200.0, 200.0), (199.0, -60.0)])
+def test_marks_at_the_edge_of_the_world_are_whole(corner: tuple[float, float]) -> None:
+    there = np.array(corner)
+    points = tuple(map(tuple, there * (1 - np.linspace(0.4, 0.0, 7))[:, None]))
+    trace = mission(track=np.array(points), path_points=points, edges=(), shortest_way=None, goals=(),
+                    frontiers=(MapFrontier(*corner, 0.0, 3.0, 0.5),),
+                    start=Pose(*points[0]), end=Pose(*corner))  # fmt: skip
+    _, board = shown_on(park(), trace)
+    for x_m, y_m in points:
+        assert board.shows_point(x_m, y_m, margin_m=-15.0 * board.metres_per_point)
+    halt = halt_place(board, trace)
+    assert board.shows_point(*halt, margin_m=-HALT_PT * board.metres_per_point)
+
+
+@settings(deadline=None, max_examples=200)
+@given(
+    st.tuples(st.floats(-100.0, 90.0), st.floats(1.0, 100.0)),
+    st.floats(0.0, 30.0),
+    st.floats(0.0, 60.0),
+)
+def test_the_frame_keeps_clear_of_what_happened(kept: tuple[float, float], margin_m: float, rim_m: float) -> None:
+    low, high = kept[0], min(kept[0] + kept[1], 100.0)
+    shown = Bounds(low - margin_m, low - margin_m, high + margin_m, high + margin_m)
+    moved = moved_into(shown, Bounds(-100.0, -100.0, 100.0, 100.0), kept=Bounds(low, low, high, high), rim_m=rim_m)
+    assert moved.width_m == pytest.approx(shown.width_m)
+    assert moved.min_x_m <= low - min(rim_m, margin_m) + 1e-9
+    assert moved.max_x_m >= high + min(rim_m, margin_m) - 1e-9
+
+
+@pytest.mark.parametrize("heading_deg", range(0, 360, 30))
+def test_the_sign_of_the_halt_hides_no_piece_of_the_way(heading_deg: int) -> None:
+    """The last decisions lie in every direction from the end, the sign beside them."""
+    towards = np.array([math.sin(math.radians(heading_deg)), math.cos(math.radians(heading_deg))])
+    points = tuple(map(tuple, towards * np.linspace(60.0, 0.0, 9)[:, None]))
+    trace = mission(track=np.array(points), path_points=points, edges=(), shortest_way=None,
+                    start=Pose(*points[0]), end=Pose(0.0, 0.0))  # fmt: skip
+    _, board = shown_on(park(), trace)
+    halt = np.array(halt_place(board, trace))
+    way = np.array(points[0]) * np.linspace(0.0, 1.0, 200)[:, None]
+    assert np.hypot(*(way - halt).T).min() > (HALT_PT + TRACK_PT) * board.metres_per_point
+    steps = np.array(points[:-1])
+    assert np.hypot(*(steps - halt).T).min() > (HALT_PT + STEP_PT) * board.metres_per_point
+
+
+def test_a_goal_on_the_way_lies_under_it() -> None:
+    trace = mission(goals=(MapGoal(48.0, -1.7, None, "bench", 2, True), MapGoal(60.0, 70.0, None, "bench", 2, False)))
+    sheet, board = shown_on(park(), trace)
+    assert [is_on_the_way(board, trace, goal) for goal in trace.goals] == [True, False]
+    stars = {tuple(item.get_offsets()[0]): item.get_zorder() for item in board.axes.collections
+             if isinstance(item, PathCollection) and STAR in item.get_paths()}  # fmt: skip
+    assert stars[48.0, -1.7] < 7.0 < stars[60.0, 70.0]
+    assert sheet is not None
+
+
+def test_the_number_of_the_last_decision_can_be_read() -> None:
+    trace = mission(end=Pose(*mission().path_points[-1]))
+    _, board = shown_on(park(), trace)
+    assert stands_on_a_step(board, trace)
+    assert not stands_on_a_step(board, replace(trace, end=Pose(90.0, 40.0)))
 
 
 def test_better_scores_are_lighter_and_none_is_grey() -> None:

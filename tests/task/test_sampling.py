@@ -5,7 +5,15 @@ import pytest
 
 from reasoned_explorer.model import SettingsError, StartError
 from reasoned_explorer.task.reading import read_goal
-from reasoned_explorer.task.sampling import SamplingSettings, free_places, sample_episodes, sample_start
+from reasoned_explorer.task.sampling import (
+    EDGE_M,
+    OutOfRangeError,
+    SamplingSettings,
+    free_places,
+    sample_episodes,
+    sample_start,
+    settle_for_a_start,
+)
 from reasoned_explorer.world.taxonomy import Ground
 from tests.task.scenes import WALKER, box, house, judge_of, patch, world_of
 
@@ -45,6 +53,31 @@ def test_unknown_ground_is_taken_where_there_is_no_other():
     assert len(free_places(world_of(ground=Ground.UNKNOWN), traveller=WALKER, count=3, seed=1)) == 3
 
 
+def test_places_keep_off_the_edge_where_they_can():
+    def rim_m(atlas, seed):
+        places = free_places(atlas, traveller=WALKER, count=100, seed=seed, edge_m=25.0)
+        bounds = atlas.world.bounds
+        low, high = (bounds.min_x_m, bounds.min_y_m), (bounds.max_x_m, bounds.max_y_m)
+        return min((places - low).min(), (high - places).min())
+
+    assert rim_m(world_of(size_m=200), 1) >= 25.0
+    assert 0.0 < rim_m(world_of(size_m=40), 1) < 20.0
+    # Known ground at the edge is better than unknown ground inside.
+    rim = world_of(size_m=200, ground=Ground.UNKNOWN, regions=[patch(Ground.PLAZA, 0, 0, 5, 200)])
+    assert rim_m(rim, 1) < 5.0
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_start_is_not_at_the_edge_of_the_world(seed):
+    atlas = world_of(("bench", 100, 100), size_m=200)
+    start, _ = sample_start(
+        atlas, read_goal("Find me a bench"), WALKER, seed=seed, settings=SamplingSettings(min_m=20, max_m=200)
+    )
+    bounds = atlas.world.bounds
+    assert bounds.min_x_m + EDGE_M <= start.x_m <= bounds.max_x_m - EDGE_M
+    assert bounds.min_y_m + EDGE_M <= start.y_m <= bounds.max_y_m - EDGE_M
+
+
 def test_a_start_is_within_the_range_and_on_allowed_ground():
     atlas, spec = town(), read_goal("Find me a bench, but avoid the grass")
     settings = SamplingSettings(min_m=20, max_m=80)
@@ -64,13 +97,40 @@ def test_the_same_seed_gives_the_same_start():
 def test_why_there_is_no_start_is_told():
     with pytest.raises(StartError, match="nothing in 'square' satisfies"):
         sample_start(town(), read_goal("Find me a hotel"), WALKER, seed=1)
-    with pytest.raises(StartError, match="too near, the others too far"):
+    with pytest.raises(StartError, match=r"too near, \d+ too far"):
         sample_start(
             town(), read_goal("Find me a fountain"), WALKER, seed=1, settings=SamplingSettings(min_m=900, max_m=999)
         )
     flooded = world_of(("bench", 50, 50), ground=Ground.WATER)
     with pytest.raises(StartError, match="no place to start"):
         sample_start(flooded, read_goal("Find me a bench"), WALKER, seed=1)
+
+
+def test_where_a_goal_is_everywhere_one_may_settle_for_the_farthest_start():
+    atlas = world_of(*[("tree", x, y) for x in range(10, 200, 36) for y in range(10, 200, 36)], size_m=200)
+    spec, settings = read_goal("Find me a tree"), SamplingSettings(min_m=60, max_m=400)
+    judge = judge_of(atlas, spec.text)
+    with pytest.raises(OutOfRangeError, match="120 too near"):
+        sample_start(atlas, spec, WALKER, seed=1, settings=settings, judge=judge)
+    start, length_m = settle_for_a_start(atlas, spec, WALKER, seed=1, settings=settings, judge=judge)
+    assert length_m == pytest.approx(judge.reference_length_m(start))
+    others = free_places(atlas, traveller=WALKER, count=60, seed=1, edge_m=EDGE_M)
+    assert length_m >= max(judge.reference_length_m((float(x), float(y))) for x, y in others) > 0.0
+
+
+def test_where_a_goal_is_far_one_may_settle_for_the_nearest_start():
+    atlas, spec = town(), read_goal("Find me a fountain")
+    settings, judge = SamplingSettings(min_m=1, max_m=2), judge_of(town(), "Find me a fountain")
+    start, length_m = settle_for_a_start(atlas, spec, WALKER, seed=3, settings=settings, judge=judge)
+    assert length_m == pytest.approx(judge.reference_length_m(start))
+    assert 0.0 < length_m < 60.0
+
+
+def test_there_must_be_something_left_to_look_for():
+    atlas = world_of(*[("tree", x, y) for x in range(5, 100, 10) for y in range(5, 100, 10)])
+    spec = read_goal("Find me a tree")
+    with pytest.raises(StartError, match="name a start"):
+        settle_for_a_start(atlas, spec, WALKER, seed=1, settings=SamplingSettings(), judge=judge_of(atlas, spec.text))
 
 
 def test_episodes_take_levels_in_turn_and_can_be_reached():

@@ -22,6 +22,8 @@ def header_lines(header: MissionHeader) -> Iterator[str]:
         lat_deg, lon_deg = GeoOrigin(*header.origin_deg).geodetic_from_enu_deg(x_m, y_m)
         start = f"{lat_deg:.5f}, {lon_deg:.5f}"
     yield f"  world    {header.world}, start {start}, heading {heading_deg:.0f}°"
+    for note in header.notes:
+        yield from textwrap.wrap(note, _WIDTH, initial_indent="  note     ", subsequent_indent="           ")
     yield f"  agent    {header.planner}"
     yield f"  eyes     {header.captioner}; vehicle {header.vehicle}"
     yield f"  clock    {header.clock}, CT {header.ct_label}; seed {header.seed}"

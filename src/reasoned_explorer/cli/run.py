@@ -10,7 +10,7 @@ from typing import Any
 import typer
 from rich.console import Console
 
-from reasoned_explorer.cli.answers import ExitCode
+from reasoned_explorer.cli.answers import ExitCode, complain
 from reasoned_explorer.cli.parsing import BoxDeg, check_start_form, parse_bbox, parse_start
 from reasoned_explorer.cli.progress import Progress, header_lines, summary_lines
 from reasoned_explorer.evaluation.mission import Mission, MissionResult
@@ -127,6 +127,9 @@ def run_from_options(options: RunOptions) -> None:
     if not options.quiet:
         for line in header_lines(mission.header):
             console.print(line, markup=False, soft_wrap=True)
+    else:
+        for note in mission.header.notes:
+            complain(f"note: {note}")
 
     progress = Progress()
 

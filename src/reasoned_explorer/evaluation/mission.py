@@ -45,14 +45,15 @@ from reasoned_explorer.simulation.vehicle import SimulatedVehicle, check_on_map,
 from reasoned_explorer.task.goal_spec import GoalSpec
 from reasoned_explorer.task.judge import Judge, TrackReport
 from reasoned_explorer.task.reading import read_goal
-from reasoned_explorer.task.sampling import SamplingSettings, sample_start
+from reasoned_explorer.task.sampling import OutOfRangeError, SamplingSettings, sample_start, settle_for_a_start
 from reasoned_explorer.vehicles import VehicleProfile
 from reasoned_explorer.vehicles.registry import vehicle_profile
 from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.geodesic import Traveller
 from reasoned_explorer.world.world import World
 
-#: A seeded random start is at least and at most this far, on the shortest compliant way, from being successful.
+#: A seeded random start is at least and at most this far, on the shortest compliant way, from being successful, where
+#: there is such a start.
 START_RANGE_M = (60.0, 400.0)
 
 
@@ -124,6 +125,7 @@ class Mission:
         self.spec = self.judge.spec
         self.goal = self.spec.goal
         stop_if_asked()
+        self._notes: tuple[str, ...] = ()
         self.start = self._start(start, self.judge.traveller)
         stop_if_asked()
         self.clock = CLOCKS[self.settings.clock]()
@@ -204,9 +206,14 @@ class Mission:
             success_radius_m=self.settings.success_radius_m,
             time_limit_s=self.settings.explorer.t_max_s,
         )
-        drawn, _ = sample_start(
-            self.atlas, self.spec, traveller, seed=self.settings.seed, settings=sampling, judge=self.judge
-        )
+        seed = self.settings.seed
+        try:
+            drawn, _ = sample_start(self.atlas, self.spec, traveller, seed=seed, settings=sampling, judge=self.judge)
+        except OutOfRangeError as error:
+            drawn, length_m = settle_for_a_start(
+                self.atlas, self.spec, traveller, seed=seed, settings=sampling, judge=self.judge
+            )
+            self._notes = _about_settled(length_m, error.near)
         return replace(drawn, z_m=self.profile.camera_height_m)
 
     def _guide(self, truth: OracleTruth) -> Guide:
@@ -275,6 +282,7 @@ class Mission:
             reference_way=tuple((round(float(x), 2), round(float(y), 2)) for x, y in way) if way is not None else (),
             success_radius_m=self.settings.success_radius_m,
             understood=tuple(self.spec.describe()),
+            notes=self._notes,
             origin_deg=None if world.origin is None else (world.origin.lat_deg, world.origin.lon_deg),
         )
 
@@ -385,6 +393,16 @@ def _checked(goal: str, world: World, settings: MissionSettings, start: Pose | N
     if spec is None:  # its error was raised
         raise AssertionError
     return spec
+
+
+def _about_settled(length_m: float, too_near: int) -> tuple[str, ...]:
+    """Return what to say of a start that had to be settled for; nothing where a longer search found one in range."""
+    low, high = START_RANGE_M
+    if low <= length_m <= high:
+        return ()
+    kind = "farthest" if length_m < low else "nearest"
+    lacking = f"no random start has a shortest way of {low:g} to {high:g} m"
+    return (f"{lacking} ({too_near} too near); this is the {kind} found, {length_m:.1f} m",)
 
 
 @cache

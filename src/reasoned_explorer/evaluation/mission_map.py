@@ -3,9 +3,12 @@
 from pathlib import Path
 
 import numpy as np
+from matplotlib.collections import LineCollection, PathCollection
+from numpy.typing import NDArray
 
 from reasoned_explorer.evaluation.mission_marks import paint_mission, places_of
 from reasoned_explorer.evaluation.mission_panel import MARGIN_PT, footnotes, write_headline, write_panel
+from reasoned_explorer.evaluation.mission_signs import RIM_PT
 from reasoned_explorer.evaluation.mission_trace import MapFrontier, MapGoal, MissionTrace
 from reasoned_explorer.model.errors import RecordError
 from reasoned_explorer.model.stopping import stop_if_asked
@@ -24,6 +27,7 @@ from reasoned_explorer.world.sheet import (
     save,
     scale_bar_width_pt,
 )
+from reasoned_explorer.world.symbols import compound_path
 from reasoned_explorer.world.world import Bounds, World
 
 __all__ = ["LEAST_EXTENT_M", "MapFrontier", "MapGoal", "MissionTrace", "draw_mission"]
@@ -75,11 +79,13 @@ def compose_mission(world: World, trace: MissionTrace) -> Sheet:
     sheet = Sheet(_HEIGHT_PT, Palette())
     map_width, map_height = room_pt - _PANEL_PT - _GAP_PT, _HEIGHT_PT - head - foot
     shape = map_height / map_width
+    happened, _ = _extent(trace)
     shown = fitted_bounds(happened_in(trace), shapes=(shape, shape), least_m=LEAST_EXTENT_M)
-    shown = _moved_into(shown, world.bounds)
+    shown = moved_into(shown, world.bounds, kept=happened, rim_m=RIM_PT * shown.width_m / map_width)
     axes = sheet.map_axes(MARGIN_PT, foot, map_width, map_height, shown)
     board = Board(axes, shown, shown.width_m / map_width, sheet.palette.muted(_MUTED))
     paint_world(board, world)
+    _paint_outside(board, world.bounds)
     stop_if_asked()
     room = Room(board)
     near = board.metres_per_point < 0.7
@@ -105,6 +111,18 @@ def compose_mission(world: World, trace: MissionTrace) -> Sheet:
 
 def happened_in(trace: MissionTrace) -> Bounds:
     """Return what a map of the mission must show: everything that happened and the goals close by, with a margin."""
+    _, with_goals = _extent(trace)
+    margin_m = max(15.0, 0.07 * max(with_goals.width_m, with_goals.height_m))
+    return Bounds(
+        with_goals.min_x_m - margin_m,
+        with_goals.min_y_m - margin_m,
+        with_goals.max_x_m + margin_m,
+        with_goals.max_y_m + margin_m,
+    )
+
+
+def _extent(trace: MissionTrace) -> tuple[Bounds, Bounds]:
+    """Return the bounds of everything that happened, and of that and the goals close by with their halos."""
     places = [(trace.start.x_m, trace.start.y_m), (trace.end.x_m, trace.end.y_m), *trace.path_points]
     places += [(frontier.x_m, frontier.y_m) for frontier in trace.frontiers]
     places += [point for edge in trace.edges for point in edge]
@@ -117,26 +135,67 @@ def happened_in(trace: MissionTrace) -> Bounds:
         near = float(np.hypot(points[:, 0] - goal.x_m, points[:, 1] - goal.y_m).min()) <= 2.0 * reach_m + 10.0
         if goal.reached or near:
             lines.append(np.array([(goal.x_m - reach_m, goal.y_m - reach_m), (goal.x_m + reach_m, goal.y_m + reach_m)]))
-    points = np.concatenate(lines)
+    return _bounds_of(points), _bounds_of(np.concatenate(lines))
+
+
+def _bounds_of(points: NDArray[np.float64]) -> Bounds:
     (west, south), (east, north) = points.min(axis=0), points.max(axis=0)
-    margin_m = max(15.0, 0.07 * max(east - west, north - south))
-    return Bounds(float(west - margin_m), float(south - margin_m), float(east + margin_m), float(north + margin_m))
+    return Bounds(float(west), float(south), float(east), float(north))
 
 
-def _moved_into(shown: Bounds, world: Bounds) -> Bounds:
+def moved_into(shown: Bounds, world: Bounds, *, kept: Bounds, rim_m: float) -> Bounds:
     """Return the bounds moved so that they show as little as can be of what lies outside the world.
 
-    What happened stays in sight: nothing happens outside the world.
+    What happened stays clear of the frame, at the world's very edge too: there the map shows a strip of nothing.
+
+    Args:
+        shown: What a map shows; it holds what happened.
+        world: The world's bounds.
+        kept: What happened.
+        rim_m: How clear of the frame, metres, as far as there is room for it.
     """
-    shift_x = _shift(shown.min_x_m, shown.max_x_m, world.min_x_m, world.max_x_m)
-    shift_y = _shift(shown.min_y_m, shown.max_y_m, world.min_y_m, world.max_y_m)
+    shift_x = _shift(
+        (shown.min_x_m, shown.max_x_m), (world.min_x_m, world.max_x_m), (kept.min_x_m, kept.max_x_m), rim_m
+    )
+    shift_y = _shift(
+        (shown.min_y_m, shown.max_y_m), (world.min_y_m, world.max_y_m), (kept.min_y_m, kept.max_y_m), rim_m
+    )
     return Bounds(shown.min_x_m + shift_x, shown.min_y_m + shift_y, shown.max_x_m + shift_x, shown.max_y_m + shift_y)
 
 
-def _shift(low: float, high: float, least: float, most: float) -> float:
+def _shift(shown: tuple[float, float], world: tuple[float, float], kept: tuple[float, float], rim_m: float) -> float:
+    (low, high), (least, most) = shown, world
     if high - low > most - least:
         return 0.0
-    return max(least - low, 0.0) + min(most - high, 0.0)
+    shift = max(least - low, 0.0) + min(most - high, 0.0)
+    # It goes no farther than until what happened comes near to the frame.
+    if shift > 0.0:
+        return max(min(shift, kept[0] - rim_m - low), 0.0)
+    return min(max(shift, kept[1] + rim_m - high), 0.0)
+
+
+def _paint_outside(board: Board, world: Bounds) -> None:
+    """Leave the sheet bare beyond the edge of the world, where shadows and the ends of streets would reach."""
+    shown = board.bounds
+    hole = _corners(world)
+    if min(world.width_m, world.height_m) <= 0.0 or all(world.contains(x, y) for x, y in _corners(shown)):
+        return
+    board.axes.add_collection(
+        PathCollection(
+            [compound_path([_corners(shown), hole[::-1]])],
+            facecolors=board.palette.paper,
+            edgecolors="none",
+            zorder=5.46,
+        ),
+        autolim=False,
+    )
+    edge = LineCollection([np.vstack([hole, hole[:1]])], colors=board.palette.soft_ink, linewidths=0.6, zorder=5.47)
+    board.axes.add_collection(edge, autolim=False)
+
+
+def _corners(bounds: Bounds) -> NDArray[np.float64]:
+    west, south, east, north = bounds.min_x_m, bounds.min_y_m, bounds.max_x_m, bounds.max_y_m
+    return np.array([(west, south), (east, south), (east, north), (west, north)])
 
 
 def _write_scale(

@@ -13,6 +13,7 @@ from matplotlib.path import Path as MarkPath
 from matplotlib.transforms import IdentityTransform
 from numpy.typing import NDArray
 
+from reasoned_explorer.evaluation.mission_signs import HALT_PT, STEP_PT, halt_place, is_on_the_way, stands_on_a_step
 from reasoned_explorer.evaluation.mission_trace import MapFrontier, MapGoal, MissionTrace
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.world.drawing_style import mix, printable, shortened, width_pt
@@ -128,11 +129,13 @@ def paint_mission(board: Board, trace: MissionTrace, room: Room) -> None:
     _paint_path_points(board, trace.path_points, pace)
     _paint_goals(board, trace)
     _paint_start(board, trace.start)
-    _paint_end(board, trace)
+    halt = halt_place(board, trace)
+    _paint_end(board, trace, halt)
+    room.block(np.array([halt]), HALT_PT)
     room.block(places_of(trace), 8.0)
     if len(trace.track):
         room.block(np.asarray(trace.track), 3.0)
-    _label(board, trace, room)
+    _label(board, trace, room, halt)
 
 
 def places_of(trace: MissionTrace) -> FloatArray:
@@ -305,14 +308,20 @@ def _paint_goals(board: Board, trace: MissionTrace) -> None:
         8.5 if len(shown) <= 20 else 6.0 if len(shown) <= 80 else 4.5, 8.5 / math.sqrt(board.metres_per_point)
     )
     for goal in sorted(shown, key=lambda g: (g.reached, g.grade, g.x_m, g.y_m)):
-        draw_goal(board.axes, (goal.x_m, goal.y_m), goal.grade, max(size_pt, 8.5) if goal.reached else size_pt)
+        size = max(size_pt, 8.5) if goal.reached else size_pt
+        # Where the way leads past a goal the star lies under it, large enough for its points to be seen.
+        if is_on_the_way(board, trace, goal):
+            draw_goal(board.axes, (goal.x_m, goal.y_m), goal.grade, max(size, 11.0), zorder=6.9)
+        else:
+            draw_goal(board.axes, (goal.x_m, goal.y_m), goal.grade, size)
 
 
-def draw_goal(axes: Axes, place: tuple[float, float], grade: int, size_pt: float) -> None:
+def draw_goal(axes: Axes, place: tuple[float, float], grade: int, size_pt: float, *, zorder: float = 8.9) -> None:
     """Draw one goal: a golden star, hollow where it would only do at a pinch."""
     size = size_pt if grade >= 2 else 0.75 * size_pt
-    stamp(axes, place, STAR, size, edge="#ffffff", width=3.0, zorder=8.9)
-    stamp(axes, place, STAR, size, face=GOLD if grade >= 2 else "#fdf3d6", edge=GOLD_EDGE, width=1.0, zorder=8.91)
+    face = GOLD if grade >= 2 else "#fdf3d6"
+    stamp(axes, place, STAR, size, edge="#ffffff", width=3.0, zorder=zorder)
+    stamp(axes, place, STAR, size, face=face, edge=GOLD_EDGE, width=1.0, zorder=zorder + 0.01)
 
 
 def _paint_start(board: Board, start: Pose) -> None:
@@ -336,16 +345,19 @@ def verdict(trace: MissionTrace) -> tuple[str, str]:
     return "Ended without finding it", WRONG if trace.success is False else NEUTRAL
 
 
-def _paint_end(board: Board, trace: MissionTrace) -> None:
+def _paint_end(board: Board, trace: MissionTrace, halt: tuple[float, float]) -> None:
     """The halt: a sign on a pole, so that it does not hide what it stands on."""
     x, y = trace.end.x_m, trace.end.y_m
-    top = y + 25.0 * board.metres_per_point
+    on_step = stands_on_a_step(board, trace)
+    share = STEP_PT * board.metres_per_point / max(math.dist((x, y), halt), 1e-9) if on_step else 0.0
+    foot = (x + share * (halt[0] - x), y + share * (halt[1] - y))
     for colour, width in (("#ffffff", 3.2), (verdict(trace)[1], 1.7)):
         board.axes.add_collection(
-            LineCollection([[(x, y), (x, top)]], colors=colour, linewidths=width, zorder=9.2), autolim=False
+            LineCollection([[foot, halt]], colors=colour, linewidths=width, zorder=9.2), autolim=False
         )
-    stamp(board.axes, (x, y), DISC, 2.6, face=verdict(trace)[1], edge="#ffffff", width=0.9, zorder=9.25)
-    draw_halt(board.axes, (x, top), trace)
+    if not on_step:
+        stamp(board.axes, (x, y), DISC, 2.6, face=verdict(trace)[1], edge="#ffffff", width=0.9, zorder=9.25)
+    draw_halt(board.axes, halt, trace)
 
 
 def draw_halt(axes: Axes, place: tuple[float, float], trace: MissionTrace) -> None:
@@ -356,12 +368,12 @@ def draw_halt(axes: Axes, place: tuple[float, float], trace: MissionTrace) -> No
     stamp(axes, place, sign, 4.4, edge="#ffffff", width=1.9, zorder=9.4)
 
 
-def _label(board: Board, trace: MissionTrace, room: Room) -> None:
+def _label(board: Board, trace: MissionTrace, room: Room, halt: tuple[float, float]) -> None:
     """Name the start, the halt, the goal that was reached and the ones nearest to the track, where there is room."""
     scale = board.metres_per_point
     wanted = [
         ("Start", trace.start.x_m, trace.start.y_m, 11.0, TRACK_TO, "sans-bold", 8.2),
-        ("Halt", trace.end.x_m, trace.end.y_m + 25.0 * scale, 11.5, verdict(trace)[1], "sans-bold", 8.2),
+        ("Halt", *halt, 11.5, verdict(trace)[1], "sans-bold", 8.2),
     ]
     track = np.asarray(trace.track, dtype=np.float64).reshape(-1, 2)
     near = np.vstack([track, [[trace.end.x_m, trace.end.y_m]]])

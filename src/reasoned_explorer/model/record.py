@@ -47,6 +47,7 @@ class MissionHeader:
         success_radius_m: R.
         understood: What the judge reads in the goal, in words.
         origin_deg: Latitude and longitude of the world's ENU origin, degrees; None for a world that is not on earth.
+        notes: What a person should know of how it was set up.
         schema: Version of this format.
     """
 
@@ -71,6 +72,7 @@ class MissionHeader:
     success_radius_m: float = 15.0
     understood: tuple[str, ...] = ()
     origin_deg: tuple[float, float] | None = None
+    notes: tuple[str, ...] = ()
     schema: int = RECORD_SCHEMA
 
 

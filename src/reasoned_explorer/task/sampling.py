@@ -27,6 +27,8 @@ _BLIND_PLACES = 300
 #: very edge is nothing.
 EDGE_M = 25.0
 _ATTEMPTS = 60
+#: Where one must settle for a start so many places are looked at, and so many ways longer than the range are searched.
+_SETTLING_PLACES, _FAR_TRIES = 200, 8
 _DRAWS, _CELLS_A_DRAW = 20, 2000
 
 
@@ -142,42 +144,122 @@ def sample_start(
     seed: int,
     settings: SamplingSettings | None = None,
     judge: Judge | None = None,
+    rim: bool = True,
 ) -> tuple[Pose, float]:
     """Return a random start for a goal, and the length of the reference way from it, metres.
 
     It is free, outdoors, on ground that one can walk on and that the goal allows, and not at the edge of the world
-    (`EDGE_M`); the way from it to success is within the settings' range. It faces anywhere.
+    (`EDGE_M`) unless only starts there will do; the way from it to success is within the settings' range. It faces
+    anywhere.
+
+    Args:
+        atlas: The world.
+        spec: What the goal asks for.
+        traveller: Who starts.
+        seed: Of the draw.
+        settings: With the range.
+        judge: Of the goal, where there is one already.
+        rim: Whether a start at the edge will do where there is no other.
 
     Raises:
-        StartError: If none is found, with the reason.
+        OutOfRangeError: If no place is within the range.
+        StartError: If nothing satisfies the goal, or there is no place to start.
     """
     chosen = settings or SamplingSettings()
     judge = judge or _judge(atlas, spec, traveller, chosen, None)
     if not judge.targets:
         what = f"nothing in {atlas.world.name!r} satisfies {spec.text!r}"
         raise StartError("start", [Fault(what, "a goal that something satisfies", "take another goal or world")])
-    places = free_places(
-        atlas, traveller=traveller, count=_ATTEMPTS, seed=seed, forbidden=spec.forbidden, edge_m=EDGE_M
-    )
-    if not len(places):
+    seen: list[float] = []
+    # The rim is tried where nothing farther in will do.
+    for edge_m in (EDGE_M, 0.0) if rim else (EDGE_M,):
+        for x_m, y_m in free_places(
+            atlas, traveller=traveller, count=_ATTEMPTS, seed=seed, forbidden=spec.forbidden, edge_m=edge_m
+        ):
+            place = float(x_m), float(y_m)
+            length_m = _length_m(judge, place, chosen)
+            if chosen.min_m <= length_m <= chosen.max_m:
+                heading_rad = 2.0 * math.pi * uniform(seed, "start heading", len(seen))
+                return Pose(*place, chosen.camera_height_m if traveller.flies else 0.0, heading_rad), length_m
+            seen.append(length_m)
+    if not seen:
         what = f"{atlas.world.name!r} has no place to start"
         raise StartError("start", [Fault(what, "free ground outdoors that the goal allows")])
-    seen: list[float] = []
-    for attempt, (x_m, y_m) in enumerate(places):
-        # The straight line is the shortest: what is too far by it needs no search.
-        if judge.success(float(x_m), float(y_m)).nearest_m - chosen.success_radius_m > chosen.max_m:
-            seen.append(math.inf)
-            continue
-        length_m = judge.reference_length_m((float(x_m), float(y_m)), max_m=chosen.max_m)
-        if chosen.min_m <= length_m <= chosen.max_m:
-            heading_rad = 2.0 * math.pi * uniform(seed, "start heading", attempt)
-            return Pose(
-                float(x_m), float(y_m), chosen.camera_height_m if traveller.flies else 0.0, heading_rad
-            ), length_m
-        seen.append(length_m)
-    near = sum(length < chosen.min_m for length in seen)
-    what = f"{len(seen)} random places in {atlas.world.name!r} for {spec.text!r}: {near} too near, the others too far"
-    raise StartError("start", [Fault(what, f"a way of {chosen.min_m:g} to {chosen.max_m:g} m", "widen the range")])
+    raise OutOfRangeError(atlas.world.name, spec.text, chosen, seen)
+
+
+class OutOfRangeError(StartError):
+    """No random place lies within the range of a start.
+
+    Args:
+        world: Name of the world.
+        goal: The sentence.
+        settings: With the range.
+        lengths_m: Of the reference way from each place; infinity where it is too long or there is none.
+    """
+
+    def __init__(self, world: str, goal: str, settings: SamplingSettings, lengths_m: Sequence[float]) -> None:
+        self.near = sum(length < settings.min_m for length in lengths_m)
+        far = len(lengths_m) - self.near
+        what = f"{len(lengths_m)} random places in {world!r} for {goal!r}: {self.near} too near, {far} too far"
+        expected = f"a way of {settings.min_m:g} to {settings.max_m:g} m"
+        super().__init__("start", [Fault(what, expected, "name a start, take another goal or another world")])
+
+
+def settle_for_a_start(
+    atlas: Atlas, spec: GoalSpec, traveller: Traveller, *, seed: int, settings: SamplingSettings, judge: Judge
+) -> tuple[Pose, float]:
+    """Return the start that comes nearest to the range where `sample_start` finds none within it.
+
+    For a goal that is everywhere that is the farthest start that there is; for one that is far away, the nearest.
+
+    Args:
+        atlas: The world.
+        spec: What the goal asks for.
+        traveller: Who starts.
+        seed: Of the draw.
+        settings: With the range.
+        judge: Of the goal.
+
+    Raises:
+        StartError: If from no place anything is left to be looked for, or can be reached.
+    """
+    places = [
+        (float(x), float(y))
+        for edge_m in (EDGE_M, 0.0)
+        for x, y in free_places(
+            atlas, traveller=traveller, count=_SETTLING_PLACES, seed=seed, forbidden=spec.forbidden, edge_m=edge_m
+        )
+    ]
+    lengths = [_length_m(judge, place, settings) for place in places]
+    reached = [index for index, length_m in enumerate(lengths) if 0.0 < length_m < math.inf]
+    if reached:
+        farthest = max(reached, key=lengths.__getitem__)
+        return _facing_anywhere(places[farthest], seed, settings, traveller), lengths[farthest]
+    by_distance = sorted(
+        (judge.success(*place).nearest_m, index) for index, place in enumerate(places) if lengths[index] == math.inf
+    )
+    for _, index in by_distance[:_FAR_TRIES]:
+        length_m = judge.reference_length_m(places[index])
+        if length_m < math.inf:
+            return _facing_anywhere(places[index], seed, settings, traveller), length_m
+    succeed = sum(length == 0.0 for length in lengths)
+    what = f"of {len(places)} random places in {atlas.world.name!r} for {spec.text!r}, {succeed} are there already"
+    expected = "a place from which there is something to look for, and a way to it"
+    raise StartError("start", [Fault(what, expected, "name a start, take another goal or another world")])
+
+
+def _facing_anywhere(place: tuple[float, float], seed: int, settings: SamplingSettings, traveller: Traveller) -> Pose:
+    heading_rad = 2.0 * math.pi * uniform(seed, "settled heading")
+    return Pose(*place, settings.camera_height_m if traveller.flies else 0.0, heading_rad)
+
+
+def _length_m(judge: Judge, place: tuple[float, float], settings: SamplingSettings) -> float:
+    """Return the length of the reference way from a place, metres; infinity where it is too long, or there is none."""
+    # The straight line is the shortest: what is too far by it needs no search.
+    if judge.success(*place).nearest_m - settings.success_radius_m > settings.max_m:
+        return math.inf
+    return judge.reference_length_m(place, max_m=settings.max_m)
 
 
 def sample_episodes(
@@ -296,7 +378,13 @@ class EpisodeDealer:
                 )
             self._known.judges[key] = judge
         start, length_m = sample_start(
-            self._atlas, spec, self._traveller, seed=seed, settings=self._settings, judge=self._known.judges[key]
+            self._atlas,
+            spec,
+            self._traveller,
+            seed=seed,
+            settings=self._settings,
+            judge=self._known.judges[key],
+            rim=False,
         )
         return Episode(
             id=f"{self._name}/L{goal.level}/{goal.name}/{lap}",
