@@ -110,7 +110,7 @@ def test_where_a_goal_is_everywhere_one_may_settle_for_the_farthest_start():
     atlas = world_of(*[("tree", x, y) for x in range(10, 200, 36) for y in range(10, 200, 36)], size_m=200)
     spec, settings = read_goal("Find me a tree"), SamplingSettings(min_m=60, max_m=400)
     judge = judge_of(atlas, spec.text)
-    with pytest.raises(OutOfRangeError, match="60 too near"):
+    with pytest.raises(OutOfRangeError, match="120 too near"):
         sample_start(atlas, spec, WALKER, seed=1, settings=settings, judge=judge)
     start, length_m = settle_for_a_start(atlas, spec, WALKER, seed=1, settings=settings, judge=judge)
     assert length_m == pytest.approx(judge.reference_length_m(start))
