@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reasoned_explorer.cli.parsing import parse_bbox, parse_start
+from reasoned_explorer.cli.parsing import check_start_form, parse_bbox, parse_start
 from reasoned_explorer.geometry import GeoOrigin
 from reasoned_explorer.model import ReasonedExplorerError, StartError, WorldError
 from tests.world.worlds import courtyard
@@ -57,3 +57,16 @@ def test_whatever_is_typed_is_understood_or_refused(text: str) -> None:
     for parse in (lambda: parse_start(text, HERE), lambda: parse_bbox(text)):
         with suppress(ReasonedExplorerError):
             parse()
+
+
+@pytest.mark.parametrize("heading", ["900", "-361", "1e9"])
+def test_a_heading_is_within_a_turn(heading: str) -> None:
+    for refuse in (lambda: parse_start(f"1,2,{heading}", HERE), lambda: check_start_form(f"1,2,{heading}")):
+        with pytest.raises(StartError, match="-360 to 360 degrees, clockwise from north"):
+            refuse()
+
+
+def test_every_fault_of_a_text_says_something_of_its_own() -> None:
+    with pytest.raises(WorldError) as raised:
+        parse_bbox("1,2,3")
+    assert [fault.what for fault in raised.value.faults] == ["3 values"]

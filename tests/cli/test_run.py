@@ -126,7 +126,7 @@ def test_everything_that_is_wrong_is_told_at_once_and_before_a_world_is_made(mon
     def expensive(*_: object, **__: object) -> None:
         raise AssertionError("a world was made")
 
-    monkeypatch.setattr("reasoned_explorer.cli.run.open_world", expensive)
+    monkeypatch.setattr("reasoned_explorer.cli.run.open_world_with_notes", expensive)
     people = ["--planner", "llm-rtt", "--minds", "embeded", "--evaluator", "gpt", "--captioner", "nosy", "--vehicle"]
     numbers = ["--views", "0", "--t-max", "nan", "--radius", "0", "--seed", "-1", "--start", "1,x", "--bbox", "1,2"]
     code, shown = _rex("run", "", "--world", "prak:7", *people, "dron", "--latency", "x", "--clock", "y", *numbers)

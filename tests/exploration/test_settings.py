@@ -34,3 +34,10 @@ def test_all_faults_are_told_at_once_and_nan_is_one() -> None:
     with pytest.raises(SettingsError) as raised:
         ExplorerSettings(views=0, t_max_s=math.nan, step_min_m=20.0, step_max_m=10.0, straight_legs=None)  # type: ignore[arg-type]
     assert len(raised.value.faults) == 4
+
+
+def test_faults_are_in_the_units_that_people_type() -> None:
+    with pytest.raises(SettingsError) as raised:
+        ExplorerSettings(sweep_rad=math.radians(-3.0), t_max_s=-60.0)
+    assert "sweep is -3°" in str(raised.value)
+    assert "t_max is -60 s (-1 minutes)" in str(raised.value)

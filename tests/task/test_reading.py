@@ -325,3 +325,27 @@ def test_any_heap_of_joints_is_read_without_contradiction_or_refused(heap):
 def test_case_and_spaces_do_not_matter(sentence, change):
     there, here = read_goal(sentence), read_goal("  " + change(sentence).replace(" ", "   ") + " ")
     assert (there.sought, there.wanted, there.shunned) == (here.sought, here.wanted, here.shunned)
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("Find me a fountian", "fountain"),
+        ("Find me a fire hydrent", "fire hydrant"),
+        ("find a trahs can near a tree", "trash can"),
+        ("find me a mailbx", "mailbox"),
+        ("find me a bench near a fountian", "fountain"),
+        ("find me somewhere to take a napp", "nap"),
+    ],
+)
+def test_a_slip_of_the_finger_is_answered_with_what_was_meant(text, meant):
+    with pytest.raises(GoalError) as caught:
+        read_goal(text)
+    assert f"did you mean {meant}" in str(caught.value)
+    assert len(str(caught.value)) < 350
+
+
+def test_what_is_known_is_told_by_a_few_examples():
+    with pytest.raises(GoalError, match=r"bench, fountain, .* \(\d+ in all\)") as caught:
+        read_goal("Find me a zebra")
+    assert "did you mean" not in str(caught.value)

@@ -5,7 +5,7 @@ import pytest
 from reasoned_explorer.model import InputError, SettingsError, UnknownNameError, WorldError
 from reasoned_explorer.world.digest import world_digest
 from reasoned_explorer.world.files import save_world
-from reasoned_explorer.world.opening import check_world_name, open_world
+from reasoned_explorer.world.opening import check_world_name, open_world, open_world_with_notes
 from tests.world.worlds import courtyard
 
 
@@ -100,3 +100,41 @@ def test_a_name_and_its_box_are_wrong_at_once() -> None:
     with pytest.raises(WorldError) as raised:
         check_world_name("nowhere.osm", bbox=(3.0, 2.0, 1.0, 1.0))
     assert len(raised.value.faults) == 3
+
+
+@pytest.mark.parametrize(
+    ("spec", "told"),
+    [
+        ("park:-1", "has the seed '-1'; expected a whole number"),
+        ("park:x", "has the seed 'x'"),
+        ("park:7@nan", "has the size 'nan'; expected metres"),
+        ("park:x@-5", "has the size '-5'"),
+        ("park:", "lacks a seed or a size"),
+        ("?", ".osm, .osm.gz, .osm.bz2, .osm.pbf or .rexworld"),
+    ],
+)
+def test_what_is_wrong_with_a_name_is_said(spec: str, told: str) -> None:
+    with pytest.raises(WorldError) as raised:
+        open_world(spec)
+    assert told in str(raised.value)
+
+
+def test_all_that_is_wrong_with_a_name_is_said_at_once() -> None:
+    with pytest.raises(WorldError) as raised:
+        open_world("prak:x@nan")
+    assert len(raised.value.faults) == 3
+    assert "did you mean park" in str(raised.value)
+
+
+def test_a_map_that_was_cropped_without_being_asked_says_so(tmp_path: Path) -> None:
+    path = tmp_path / "wide.osm"
+    ways = "".join(f"<node id='{k}' lat='{48.1 + k % 2 / 500}' lon='{11.5 + k / 500}'/>" for k in range(1, 5))
+    path.write_text(
+        f"<osm version='0.6'><bounds minlat='48' minlon='11' maxlat='49' maxlon='12'/>{ways}"
+        "<way id='9'><nd ref='1'/><nd ref='2'/><nd ref='3'/><nd ref='4'/><tag k='highway' v='footway'/></way></osm>"
+    )
+    world, notes = open_world_with_notes(str(path))
+    assert len(notes) == 1
+    assert "too large; imported what is built up" in notes[0]
+    assert world.bounds.width_m < 1000.0
+    assert open_world_with_notes("plaza:4@150")[1] == ()

@@ -48,7 +48,10 @@ def run(
     bbox: Annotated[str | None, typer.Option(help="Crop an OpenStreetMap file: lon0,lat0,lon1,lat1 (degrees).")] = None,
     start: Annotated[
         str | None,
-        typer.Option(help="lat,lon,heading in degrees in a real place; x,y,heading in metres and degrees elsewhere."),
+        typer.Option(
+            help="lat,lon,heading in degrees in a real place; x,y,heading in metres and degrees elsewhere. The heading "
+            "is clockwise from north and may be left out: north. What flies may start over water."
+        ),
     ] = None,
     seed: Annotated[int, typer.Option(help="Everything that is drawn is keyed by it.")] = 0,
     planner: Annotated[str, typer.Option(help="See rex names.")] = "llm-rrt",

@@ -20,17 +20,17 @@ def parse_bbox(text: str | None) -> BoxDeg | None:
         return None
     numbers, faults = _numbers(text, 4)
     if faults:
-        raise WorldError(f"bounding box {text!r}", [*faults, Fault("a bounding box", "lon0,lat0,lon1,lat1 in degrees")])
+        raise WorldError(f"bounding box {text!r} (expected lon0,lat0,lon1,lat1 in degrees)", faults)
     return numbers[0], numbers[1], numbers[2], numbers[3]
 
 
 def check_start_form(text: str | None) -> None:
-    """Check what can be known of a start before its world is there: that it is two or three finite numbers.
+    """Check what can be known of a start before its world is there: two or three finite numbers, a sound heading.
 
     Raises:
         StartError: If it is not.
     """
-    faults = [] if text is None else _numbers(text, 3 if text.count(",") != 1 else 2)[1]
+    faults = [] if text is None else _start_numbers(text)[1]
     if faults:
         form = "lat,lon,heading in degrees in a real place, x,y,heading in metres and degrees elsewhere"
         raise StartError(f"start {text!r} (expected {form})", faults)
@@ -45,12 +45,13 @@ def parse_start(text: str | None, world: World) -> Pose | None:
         world: Whose frame it is.
 
     Raises:
-        StartError: If the text is not two or three finite numbers, no such place is on earth, or it is off the map.
+        StartError: If the text is not two or three finite numbers, the heading is none, no such place is on earth, or
+            it is off the map.
     """
     if text is None:
         return None
     form = "x,y,heading in metres and degrees" if world.origin is None else "lat,lon,heading in degrees"
-    numbers, faults = _numbers(text, 3 if text.count(",") != 1 else 2)
+    numbers, faults = _start_numbers(text)
     if not faults and world.origin is not None:
         if not -90.0 <= numbers[0] <= 90.0:
             faults.append(Fault(f"latitude {numbers[0]}", "-90 to 90", "latitude comes first"))
@@ -67,6 +68,14 @@ def parse_start(text: str | None, world: World) -> Pose | None:
             raise StartError("start", [Fault(what, _extent_deg(world), "leave --start out for a random one")])
     heading_deg = numbers[2] if len(numbers) == 3 else 0.0
     return Pose(x_m, y_m, 0.0, normalise_heading_rad(math.radians(heading_deg)))
+
+
+def _start_numbers(text: str) -> tuple[list[float], list[Fault]]:
+    """Return the numbers of a start; a heading beyond a full turn is more likely a slip than meant."""
+    numbers, faults = _numbers(text, 3 if text.count(",") != 1 else 2)
+    if not faults and len(numbers) == 3 and not -360.0 <= numbers[2] <= 360.0:
+        faults.append(Fault(f"heading {numbers[2]:g}", "-360 to 360 degrees, clockwise from north"))
+    return numbers, faults
 
 
 def parse_levels(text: str) -> tuple[int, ...]:

@@ -23,7 +23,7 @@ from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.planning.setting_pairs import parse_planner_settings
 from reasoned_explorer.task.reading import read_goal
 from reasoned_explorer.world.files import save_world
-from reasoned_explorer.world.opening import KEPT_SUFFIX, check_world_name, open_world
+from reasoned_explorer.world.opening import KEPT_SUFFIX, check_world_name, open_world_with_notes
 
 MAP_NAME = "map.png"
 WORLD_NAME = f"world{KEPT_SUFFIX}"
@@ -120,7 +120,9 @@ def run_from_options(options: RunOptions) -> None:
     if not options.quiet and not _kernels_are_compiled():
         console.print("compiling the kernels, which takes up to a minute (the first time only) …", markup=False)
     stop_if_asked()
-    world = open_world(options.world, seed=options.seed, bbox=bbox)
+    world, notes = open_world_with_notes(options.world, seed=options.seed, bbox=bbox)
+    for note in notes:
+        complain(f"note: {note}; choose a part with --bbox")
     stop_if_asked()
     mission = Mission(options.goal, world, settings, start=parse_start(options.start, world))
     stop_if_asked()

@@ -58,7 +58,10 @@ class ExplorerSettings:
 
     def __post_init__(self) -> None:
         low, high = self.step_range_m(None)
-        sweep = f"{math.degrees(self.sweep_rad)}°" if is_within(self.sweep_rad) else repr(self.sweep_rad)
+        sweep = f"{math.degrees(self.sweep_rad):.10g}°" if is_within(self.sweep_rad) else repr(self.sweep_rad)
+        t_max = (
+            f"{self.t_max_s:g} s ({self.t_max_s / 60.0:g} minutes)" if is_within(self.t_max_s) else f"{self.t_max_s} s"
+        )
         steps = is_within(low, 0.5, 200.0) and is_within(high, 0.5, 200.0) and low <= high
         checks = (
             (is_within(self.views, 1, 24, whole=True), f"views is {self.views!r}", "1 to 24"),
@@ -66,8 +69,8 @@ class ExplorerSettings:
             (steps, f"steps are {low} to {high} m", "0.5 m ≤ shortest ≤ longest ≤ 200 m"),
             (
                 is_within(self.t_max_s, 0.0, 86_400.0) and self.t_max_s > 0.0,
-                f"t_max is {self.t_max_s} s",
-                "above 0, at most 86,400 s",
+                f"t_max is {t_max}",
+                "above 0, at most 86,400 s (1,440 minutes)",
             ),
             (is_within(self.max_steps, 1, 100_000, whole=True), f"max_steps is {self.max_steps!r}", "1 to 100,000"),
             (

@@ -6,7 +6,6 @@ cannot grade but what cannot change the meaning (an adjective) is listed in `Goa
 relation or a kind of ground that it does not know) is refused.
 """
 
-import difflib
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -15,8 +14,9 @@ from reasoned_explorer.task import words
 from reasoned_explorer.task.contradictions import contradictions
 from reasoned_explorer.task.goal_spec import PASS_GRADE, AttributeTest, Condition, GoalSpec, Relation, Sought
 from reasoned_explorer.task.grades import Affordance
-from reasoned_explorer.task.lexer import Kind, Token, known_words, tokens_of
+from reasoned_explorer.task.lexer import Kind, Token, tokens_of
 from reasoned_explorer.task.loose_ends import SOUGHT, Denial, hanging, missing
+from reasoned_explorer.task.near_misses import SOME_THINGS, did_you_mean, near_misses, near_misses_among
 from reasoned_explorer.world.taxonomy import OBJECT_CLASSES, Ground
 
 _MAX_LENGTH = 300
@@ -46,7 +46,8 @@ def read_goal(text: str) -> GoalSpec:
         raise GoalError("goal", [Fault("the sentence is empty", "a sentence such as 'Find me a fountain'")])
     if len(text) > _MAX_LENGTH:
         raise GoalError(subject, [Fault(f"it has {len(text)} characters", f"at most {_MAX_LENGTH}")])
-    reader = _Reader(tokens_of(text))
+    tokens = tokens_of(text)
+    reader = _Reader(tokens)
     reader.read()
     faults = reader.faults
     both = sorted(reader.wanted & reader.shunned)
@@ -56,7 +57,7 @@ def read_goal(text: str) -> GoalSpec:
     faults += contradictions(reader.conditions, reader.attributes)
     rows, level = reader.rows()
     if not rows and not faults:
-        faults.append(_nothing(reader.unread))
+        faults.append(_nothing(tokens))
     if faults:
         raise GoalError(subject, faults)
     return GoalSpec(
@@ -70,20 +71,10 @@ def read_goal(text: str) -> GoalSpec:
     )
 
 
-def _nothing(unread: Sequence[str]) -> Fault:
-    known = known_words()
-    near: dict[str, None] = {}
-    for size in (2, 1):
-        for start in range(len(unread) - size + 1):
-            phrase = " ".join(unread[start : start + size])
-            near.update(dict.fromkeys(difflib.get_close_matches(phrase, known, n=2, cutoff=0.75)))
-    classes = ", ".join(item.noun for item in OBJECT_CLASSES.values())
-    hint = f"did you mean {' or '.join(list(near)[:3])}? " if near else ""
+def _nothing(tokens: Sequence[Token]) -> Fault:
     what = "it asks for nothing that the judge can recognise in a world"
-    expected = (
-        f"one of the things that the judge knows ({classes}) or something to do, such as 'somewhere to take a nap'"
-    )
-    return Fault(what, expected, hint.strip())
+    expected = f"a thing such as {SOME_THINGS}, or something to do, such as 'somewhere to take a nap'"
+    return Fault(what, expected, did_you_mean(near_misses_among(tokens)))
 
 
 class _Reader:
@@ -247,10 +238,8 @@ class _Reader:
         else:
             kind = "a building" if noun.buildings else "ground"
             what = f"{token.text!r} is {kind}, and the judge grades only things as goals"
-            known = ", ".join(item.noun for item in OBJECT_CLASSES.values())
-            self.faults.append(
-                Fault(what, f"one of: {known}", f"ask for something that is on or near the {token.text}")
-            )
+            remedy = f"ask for something that is on or near the {token.text}"
+            self.faults.append(Fault(what, f"a thing such as {SOME_THINGS}", remedy))
 
     def _relation(self, token: Token) -> None:
         relation, negated, distance_m = token.value
@@ -315,8 +304,7 @@ class _Reader:
         if token.text in _LOOSE:
             return
         following = self._tokens[start].text
-        near = difflib.get_close_matches(following, known_words(), n=3, cutoff=0.75)
-        hint = f"did you mean {' or '.join(near)}?" if near else ""
+        hint = did_you_mean(near_misses(following) or near_misses_among(self._tokens[start : start + 3]))
         self.faults.append(
             Fault(f"{token.text!r} what? {following!r} is not known", "a thing or a ground that is known", hint)
         )

@@ -22,6 +22,11 @@ DEFAULT_SIZE_M = 400.0
 KEPT_SUFFIX = ".rexworld"
 _OSM_SUFFIXES = (".osm", ".pbf", ".osm.gz", ".osm.bz2", ".xml")
 _NAME = re.compile(r"(?P<name>[A-Za-z][\w-]*)(?::(?P<seed>\d{1,18}))?(?:@(?P<size>\d+(?:\.\d+)?))?")
+_LOOSE_NAME = re.compile(r"(?P<name>[A-Za-z][\w-]*)(?::(?P<seed>[^@~]*))?(?:@(?P<size>[^~]*))?")
+_SEED, _SIZE = re.compile(r"\d{1,18}"), re.compile(r"\d+(?:\.\d+)?")
+#: A world, and what a person must know of it.
+_Made = tuple[World, tuple[str, ...]]
+_Maker = Callable[[], _Made]
 _PERMUTED = re.compile(r"(?P<spec>.+)~permuted:(?P<seed>\d{1,18})")
 
 
@@ -45,7 +50,21 @@ def open_world(
         UnknownNameError: If there is no such district or registered world.
         SettingsError: If seed or size are out of range.
     """
-    return _maker_of(spec, seed=seed, size_m=size_m, bbox=bbox)()
+    return _maker_of(spec, seed=seed, size_m=size_m, bbox=bbox)()[0]
+
+
+def open_world_with_notes(
+    spec: str,
+    *,
+    seed: int = 0,
+    bbox: tuple[float, float, float, float] | None = None,
+) -> tuple[World, tuple[str, ...]]:
+    """Return the world as `open_world` does, and what a person must know of it: that a map was cropped, say.
+
+    Raises:
+        InputError: As `open_world`.
+    """
+    return _maker_of(spec, seed=seed, size_m=DEFAULT_SIZE_M, bbox=bbox)()
 
 
 def check_world_name(
@@ -63,9 +82,7 @@ def check_world_name(
     _maker_of(spec, seed=seed, size_m=size_m, bbox=bbox)
 
 
-def _maker_of(
-    spec: str, *, seed: int, size_m: float, bbox: tuple[float, float, float, float] | None
-) -> Callable[[], World]:
+def _maker_of(spec: str, *, seed: int, size_m: float, bbox: tuple[float, float, float, float] | None) -> _Maker:
     """Return what makes a world, once all is checked that costs nothing."""
     if faults := kind_faults("the name", spec, str, "text such as park:7 or town.osm.pbf"):
         raise WorldError("world", faults)
@@ -74,14 +91,13 @@ def _maker_of(
     permuted = _PERMUTED.fullmatch(spec)
     if permuted is not None:
         make = _maker_of(permuted["spec"], seed=seed, size_m=size_m, bbox=bbox)
-        return lambda: _permuted(make(), int(permuted["seed"]))
+        return lambda: _permuted(*make(), int(permuted["seed"]))
     lowered = spec.lower()
     if lowered.endswith(KEPT_SUFFIX) or lowered.endswith(_OSM_SUFFIXES) or "/" in spec:
         return _reader_of(Path(spec), seed=seed, bbox=bbox)
     match = _NAME.fullmatch(spec)
     if match is None:
-        expected = "a district like park:7@400, or a file that ends in .osm, .osm.pbf or .rexworld"
-        raise WorldError("world", [Fault(f"{spec!r} is neither a name nor a file", expected)])
+        raise WorldError("world", _name_faults(spec))
     found = Gathering()
     if bbox is not None:
         found.add(_no_bbox(spec))
@@ -92,7 +108,30 @@ def _maker_of(
     return make
 
 
-def _nothing() -> World:
+def _name_faults(spec: str) -> list[Fault]:
+    """Return what is wrong with what is neither a name nor a file."""
+    loose = _LOOSE_NAME.fullmatch(spec)
+    if loose is None:
+        expected = (
+            f"a district like park:7@400, or a file that ends in .osm, .osm.gz, .osm.bz2, .osm.pbf or {KEPT_SUFFIX}"
+        )
+        return [Fault(f"{spec!r} is neither a name nor a file", expected)]
+    from reasoned_explorer.world.generator import DISTRICTS
+
+    known = (*DISTRICTS, *WORLDS.names())
+    faults: list[Fault] = []
+    if loose["name"] not in known:
+        faults += UnknownNameError("world", loose["name"], known).faults
+    if not _SEED.fullmatch(loose["seed"] or "0"):
+        faults.append(Fault(f"{spec!r} has the seed {loose['seed']!r}", "a whole number from 0 on, as in park:7"))
+    if not _SIZE.fullmatch(loose["size"] or "1"):
+        faults.append(Fault(f"{spec!r} has the size {loose['size']!r}", "metres, as in park:7@400"))
+    return faults or [
+        Fault(f"{spec!r} lacks a seed or a size behind its mark", "a name like park, park:7 or park:7@400")
+    ]
+
+
+def _nothing() -> _Made:
     raise AssertionError  # stands for what was refused; the refusal is raised
 
 
@@ -100,13 +139,13 @@ def _no_bbox(spec: str) -> WorldError:
     return WorldError("world", [Fault(f"a bounding box for {spec!r}", "one only for OpenStreetMap files")])
 
 
-def _permuted(world: World, seed: int) -> World:
+def _permuted(world: World, notes: tuple[str, ...], seed: int) -> _Made:
     from reasoned_explorer.world.permuted import permute_labels
 
-    return rounded(permute_labels(world, seed=seed))
+    return rounded(permute_labels(world, seed=seed)), notes
 
 
-def _reader_of(path: Path, *, seed: int, bbox: tuple[float, float, float, float] | None) -> Callable[[], World]:
+def _reader_of(path: Path, *, seed: int, bbox: tuple[float, float, float, float] | None) -> _Maker:
     if path.name.lower().endswith(KEPT_SUFFIX):
         from reasoned_explorer.world.files import load_world
 
@@ -114,22 +153,29 @@ def _reader_of(path: Path, *, seed: int, bbox: tuple[float, float, float, float]
             raise _no_bbox(str(path))
         if not path.is_file():
             load_world(path)  # says why it cannot
-        return lambda: load_world(path)
-    from reasoned_explorer.world.osm.importer import check_source, import_osm
+        return lambda: (load_world(path), ())
+    from reasoned_explorer.world.osm.importer import check_source
 
     check_source(path, bbox=bbox)
-    return lambda: import_osm(path, bbox=bbox, seed=seed)
+    return lambda: _imported(path, seed, bbox)
 
 
-def _generator_of(name: str, seed: int, size_m: float) -> Callable[[], World]:
+def _imported(path: Path, seed: int, bbox: tuple[float, float, float, float] | None) -> _Made:
+    from reasoned_explorer.world.osm.importer import import_osm_with_report
+
+    world, report = import_osm_with_report(path, bbox=bbox, seed=seed)
+    return world, (report.cropped,) if report.cropped else ()
+
+
+def _generator_of(name: str, seed: int, size_m: float) -> _Maker:
     from reasoned_explorer.world.generator import DISTRICTS, check_request, generate_world
 
     if name in DISTRICTS:
         check_request(name, seed=seed, size_m=size_m)
-        return lambda: generate_world(name, seed=seed, size_m=size_m)
+        return lambda: (generate_world(name, seed=seed, size_m=size_m), ())
     if name not in WORLDS.names():
         raise UnknownNameError("world", name, [*DISTRICTS, *WORLDS.names()])
-    return lambda: _registered(name, seed, size_m)
+    return lambda: (_registered(name, seed, size_m), ())
 
 
 def _registered(name: str, seed: int, size_m: float) -> World:

@@ -307,6 +307,16 @@ def test_files_that_are_none(tmp_path: Path) -> None:
         ("noise.osm.pbf", bytes(range(256)) * 10, "cannot be read"),
         ("noise.osm.gz", b"not gzip at all", "cannot be read"),
         ("nothing.osm", b'<osm version="0.6"></osm>', "there is nothing in"),
+        (
+            "swapped.osm",
+            b'<osm version="0.6"><node id="1" lat="148.1" lon="11.5"><tag k="amenity" v="bench"/></node></osm>',
+            "lies on earth: 1 nodes that lie nowhere on earth; expected latitudes from -90 to 90",
+        ),
+        (
+            "adrift.osm",
+            b'<osm version="0.6"><node id="1"><tag k="amenity" v="bench"/></node></osm>',
+            "that has a place: 1 nodes without a place",
+        ),
     ]:
         path = tmp_path / name
         path.write_bytes(content)

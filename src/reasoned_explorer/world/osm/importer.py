@@ -17,7 +17,7 @@ from reasoned_explorer.world.osm.buildings import buildings_of
 from reasoned_explorer.world.osm.features import features_of
 from reasoned_explorer.world.osm.furniture import objects_of
 from reasoned_explorer.world.osm.paths import PathIndex
-from reasoned_explorer.world.osm.reading import BoxDeg, Extract, check_file, read_extract
+from reasoned_explorer.world.osm.reading import OFF_EARTH, BoxDeg, Extract, check_file, read_extract
 from reasoned_explorer.world.osm.surfaces import passages_of, regions_of, ways_of
 from reasoned_explorer.world.osm.tags import class_of
 from reasoned_explorer.world.rounding import rounded
@@ -43,12 +43,14 @@ class ImportReport:
         newest_edit: Day of the newest edit, ``YYYY-MM-DD``, or empty.
         counts: How much of what there is, and how much of what was lost or dropped.
         warnings: What a person should know, one sentence each.
+        cropped: What a person must know: that only a part was imported, which nobody asked for; empty otherwise.
     """
 
     bbox_deg: BoxDeg
     newest_edit: str
     counts: Mapping[str, int] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+    cropped: str = ""
 
 
 def import_osm(
@@ -81,9 +83,10 @@ def import_osm_with_report(
     bbox = check_source(file, bbox=bbox)
     extract = read_extract(file, box_deg=bbox)
     stop_if_asked()
-    warnings: list[str] = []
+    cropped = ""
     if bbox is None:
-        bbox = _whole(extract, file, warnings)
+        bbox, cropped = _whole(extract, file)
+    warnings = [cropped] if cropped else []
     origin, bounds = frame_of(bbox)
     features = features_of(extract, origin, bounds)
     if not (features.points or features.lines or features.areas):
@@ -123,7 +126,7 @@ def import_osm_with_report(
         warnings.append(f"{region_counts['loose ends of coastline']} loose ends of coastline led to the nearest edge")
     if region_counts["stretches of unclear coast"]:
         warnings.append("the coastline is broken; check where the sea is")
-    return rounded(world), ImportReport(bbox, extract.newest_edit, counts, tuple(warnings))
+    return rounded(world), ImportReport(bbox, extract.newest_edit, counts, tuple(warnings), cropped)
 
 
 def check_source(path: Path, *, bbox: BoxDeg | None = None) -> BoxDeg | None:
@@ -192,23 +195,30 @@ def _show(box: BoxDeg) -> str:
     return ",".join(f"{side:.6g}" for side in box)
 
 
-def _whole(extract: Extract, file: Path, warnings: list[str]) -> BoxDeg:
+def _whole(extract: Extract, file: Path) -> tuple[BoxDeg, str]:
     """Return what to import of a file when nobody said: what it covers, or, where that is too much, what is built up.
+
+    The second value says so, in words.
 
     Raises:
         WorldError: There is nothing in it, or even that is too large.
     """
     extent = _extent(extract)
     if extent is None:
-        fault = Fault(f"there is nothing in {file.name}", "nodes and ways with tags", "check what was extracted")
+        lost = ", ".join(f"{count} {what}" for what, count in extract.lost.items())
+        if OFF_EARTH in extract.lost:
+            expected = "latitudes from -90 to 90 and longitudes from -180 to 180"
+            fault = Fault(f"nothing in {file.name} lies on earth: {lost}", expected, "are they the wrong way round?")
+        else:
+            what = f"there is nothing in {file.name}" + (f" that has a place: {lost}" if lost else "")
+            fault = Fault(what, "nodes and ways with tags", "check what was extracted")
         raise WorldError("OpenStreetMap file", [fault])
     first = extent if extract.header_box_deg is None else extract.header_box_deg
     if not _size_faults(first, ""):
-        return first
+        return first, ""
     for box in (extent, _built_up(extract)):
         if box is not None and not _size_faults(box, ""):
-            warnings.append(f"{_show(first)} is too large; imported what is built up: {_show(box)}")
-            return box
+            return box, f"{_show(first)} is too large; imported what is built up: {_show(box)}"
     raise WorldError("OpenStreetMap file", _size_faults(first, _CROP))
 
 

@@ -22,6 +22,10 @@ from reasoned_explorer.model.checks import is_there
 BoxDeg = tuple[float, float, float, float]
 _SUFFIXES = (".osm", ".osm.gz", ".osm.bz2", ".osm.pbf", ".pbf")
 _CHUNK = 20_000
+#: What the lost are called whose latitude or longitude is none.
+OFF_EARTH = "nodes that lie nowhere on earth"
+#: What osmium says where a file gives no coordinate.
+_UNDEFINED = 2**31 - 1
 _EXPECTED = "an OpenStreetMap extract: .osm, .osm.gz, .osm.bz2 or .osm.pbf"
 _GET_ONE = "download the extract again, for example with the export of openstreetmap.org"
 
@@ -100,7 +104,7 @@ class _Collector:
         self.ways: dict[int, list[tuple[WayRecord, Any]]] = {}
         self.torn: dict[int, _Torn] = {}
         self.newest: Any = None
-        self.lost = {"nodes without a place": 0, "ways that lost nodes": 0, "ways without a line": 0}
+        self.lost = {"nodes without a place": 0, OFF_EARTH: 0, "ways that lost nodes": 0, "ways without a line": 0}
         self._fresh: list[int] = []
         self._factory = osmium.geom.WKBFactory()
 
@@ -120,7 +124,8 @@ class _Collector:
     def _add_node(self, node: Any) -> None:
         place = node.location
         if not place.valid():
-            self.lost["nodes without a place"] += 1
+            is_told = _UNDEFINED not in {place.x, place.y}
+            self.lost[OFF_EARTH if is_told else "nodes without a place"] += 1
             return
         if self.box_deg is not None and not _within(self.box_deg, place.lon, place.lat):
             return
