@@ -40,8 +40,12 @@ PARTS = (
     Part("pymap3d", "pymap3d", "geodetic frames"),
     Part("pydantic", "pydantic", "records and files"),
     Part("matplotlib", "matplotlib", "map pictures"),
+    Part("pillow", "PIL", "pictures in reports"),
+    Part("jinja2", "jinja2", "reports"),
     Part("typer", "typer", "the command line"),
     Part("rich", "rich", "progress"),
+    Part("pyarrow", "pyarrow", "results as Parquet", "pip install 'reasoned-explorer[parquet]'", core=False),
+    Part("ray", "ray", "a benchmark on a cluster", "pip install 'reasoned-explorer[ray]'", core=False),
     Part(
         "tokenizers",
         "tokenizers",
