@@ -110,7 +110,7 @@ def test_where_a_goal_is_everywhere_one_may_settle_for_the_farthest_start():
     atlas = world_of(*[("tree", x, y) for x in range(10, 200, 36) for y in range(10, 200, 36)], size_m=200)
     spec, settings = read_goal("Find me a tree"), SamplingSettings(min_m=60, max_m=400)
     judge = judge_of(atlas, spec.text)
-    with pytest.raises(OutOfRangeError, match="120 too near"):
+    with pytest.raises(OutOfRangeError, match="60 too near"):
         sample_start(atlas, spec, WALKER, seed=1, settings=settings, judge=judge)
     start, length_m = settle_for_a_start(atlas, spec, WALKER, seed=1, settings=settings, judge=judge)
     assert length_m == pytest.approx(judge.reference_length_m(start))
@@ -184,3 +184,18 @@ def test_a_real_place_gives_episodes_of_all_levels(osm_folder):
     for episode in episodes:
         path = judge_of(atlas, episode.spec.text).reference_path(episode.start)
         assert np.hypot(*np.diff(path, axis=0).T).sum() == pytest.approx(episode.reference_length_m, rel=0.03, abs=1.0)
+
+
+def test_one_settles_for_the_rim_only_where_nothing_farther_in_is_in_range():
+    # Only from the outer half of the world is the way long enough, and few places of the first draw lie there.
+    atlas, spec = world_of(("bench", 100, 100), size_m=200), read_goal("Find me a bench")
+    judge = judge_of(atlas, spec.text)
+    inner = SamplingSettings(min_m=80, max_m=400)
+    start, length_m = settle_for_a_start(atlas, spec, WALKER, seed=2, settings=inner, judge=judge)
+    assert length_m >= 80
+    assert min(start.x_m, start.y_m) >= 25
+    assert max(start.x_m, start.y_m) <= 175
+    start, length_m = settle_for_a_start(
+        atlas, spec, WALKER, seed=2, settings=SamplingSettings(min_m=97, max_m=400), judge=judge
+    )
+    assert length_m >= 97

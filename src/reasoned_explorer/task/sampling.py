@@ -144,22 +144,11 @@ def sample_start(
     seed: int,
     settings: SamplingSettings | None = None,
     judge: Judge | None = None,
-    rim: bool = True,
 ) -> tuple[Pose, float]:
     """Return a random start for a goal, and the length of the reference way from it, metres.
 
     It is free, outdoors, on ground that one can walk on and that the goal allows, and not at the edge of the world
-    (`EDGE_M`) unless only starts there will do; the way from it to success is within the settings' range. It faces
-    anywhere.
-
-    Args:
-        atlas: The world.
-        spec: What the goal asks for.
-        traveller: Who starts.
-        seed: Of the draw.
-        settings: With the range.
-        judge: Of the goal, where there is one already.
-        rim: Whether a start at the edge will do where there is no other.
+    (`EDGE_M`); the way from it to success is within the settings' range. It faces anywhere.
 
     Raises:
         OutOfRangeError: If no place is within the range.
@@ -170,21 +159,20 @@ def sample_start(
     if not judge.targets:
         what = f"nothing in {atlas.world.name!r} satisfies {spec.text!r}"
         raise StartError("start", [Fault(what, "a goal that something satisfies", "take another goal or world")])
-    seen: list[float] = []
-    # The rim is tried where nothing farther in will do.
-    for edge_m in (EDGE_M, 0.0) if rim else (EDGE_M,):
-        for x_m, y_m in free_places(
-            atlas, traveller=traveller, count=_ATTEMPTS, seed=seed, forbidden=spec.forbidden, edge_m=edge_m
-        ):
-            place = float(x_m), float(y_m)
-            length_m = _length_m(judge, place, chosen)
-            if chosen.min_m <= length_m <= chosen.max_m:
-                heading_rad = 2.0 * math.pi * uniform(seed, "start heading", len(seen))
-                return Pose(*place, chosen.camera_height_m if traveller.flies else 0.0, heading_rad), length_m
-            seen.append(length_m)
-    if not seen:
+    places = free_places(
+        atlas, traveller=traveller, count=_ATTEMPTS, seed=seed, forbidden=spec.forbidden, edge_m=EDGE_M
+    )
+    if not len(places):
         what = f"{atlas.world.name!r} has no place to start"
         raise StartError("start", [Fault(what, "free ground outdoors that the goal allows")])
+    seen: list[float] = []
+    for attempt, (x_m, y_m) in enumerate(places):
+        place = float(x_m), float(y_m)
+        length_m = _length_m(judge, place, chosen)
+        if chosen.min_m <= length_m <= chosen.max_m:
+            heading_rad = 2.0 * math.pi * uniform(seed, "start heading", attempt)
+            return Pose(*place, chosen.camera_height_m if traveller.flies else 0.0, heading_rad), length_m
+        seen.append(length_m)
     raise OutOfRangeError(atlas.world.name, spec.text, chosen, seen)
 
 
@@ -224,14 +212,17 @@ def settle_for_a_start(
     Raises:
         StartError: If from no place anything is left to be looked for, or can be reached.
     """
-    places = [
-        (float(x), float(y))
-        for edge_m in (EDGE_M, 0.0)
-        for x, y in free_places(
+    places: list[tuple[float, float]] = []
+    lengths: list[float] = []
+    # More places, and at last the world's rim, may still hold one that is within the range.
+    for edge_m in (EDGE_M, 0.0):
+        for x_m, y_m in free_places(
             atlas, traveller=traveller, count=_SETTLING_PLACES, seed=seed, forbidden=spec.forbidden, edge_m=edge_m
-        )
-    ]
-    lengths = [_length_m(judge, place, settings) for place in places]
+        ):
+            places.append((float(x_m), float(y_m)))
+            lengths.append(_length_m(judge, places[-1], settings))
+            if settings.min_m <= lengths[-1] <= settings.max_m:
+                return _facing_anywhere(places[-1], seed, settings, traveller), lengths[-1]
     reached = [index for index, length_m in enumerate(lengths) if 0.0 < length_m < math.inf]
     if reached:
         farthest = max(reached, key=lengths.__getitem__)
@@ -378,13 +369,7 @@ class EpisodeDealer:
                 )
             self._known.judges[key] = judge
         start, length_m = sample_start(
-            self._atlas,
-            spec,
-            self._traveller,
-            seed=seed,
-            settings=self._settings,
-            judge=self._known.judges[key],
-            rim=False,
+            self._atlas, spec, self._traveller, seed=seed, settings=self._settings, judge=self._known.judges[key]
         )
         return Episode(
             id=f"{self._name}/L{goal.level}/{goal.name}/{lap}",
