@@ -5,6 +5,10 @@ import pytest
 
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import InputError, SettingsError, TrackPoint
+from reasoned_explorer.task.judge import Judge
+from reasoned_explorer.task.reading import read_goal
+from reasoned_explorer.world.atlas import Atlas
+from reasoned_explorer.world.generator import generate_world
 from reasoned_explorer.world.geodesic import Traveller
 from reasoned_explorer.world.taxonomy import Ground
 from tests.task.scenes import box, house, judge_of, patch, world_of
@@ -191,3 +195,14 @@ def test_every_reference_way_complies(sentence):
         way = judge.reference_path((x, 50.5))
         report = judge.review(track(*way))
         assert report.success, (x, report)
+
+
+@pytest.mark.parametrize("goal", ["Find me a bench", "Find me a lawn", "Find me a cafe", "Find me a fountain"])
+def test_the_picture_of_success_says_what_the_judge_says_at_each_place(goal: str) -> None:
+    atlas = Atlas(generate_world("plaza", seed=4, size_m=160))
+    judge = Judge(atlas, read_goal(goal), traveller=Traveller(flies=True, radius_m=0.3, collides=True))
+    mask, grid = judge.success_mask(), atlas.geodesics.grid
+    for row in range(0, grid.rows, 3):
+        for col in range(0, grid.cols, 3):
+            at = grid.min_x_m + (col + 0.5) * grid.cell_m, grid.min_y_m + (row + 0.5) * grid.cell_m
+            assert mask[row, col] == judge.success(*at).success, at

@@ -14,6 +14,7 @@ from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Fault, InputError, SettingsError, TrackPoint
 from reasoned_explorer.task.compliance import ComplianceReport, compliance_of
 from reasoned_explorer.task.goal_spec import PASS_GRADE, GoalSpec
+from reasoned_explorer.task.seeing import marks_of, sees_many
 from reasoned_explorer.task.targets import Grader, Target
 from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.geodesic import DistanceField, Traveller
@@ -279,11 +280,18 @@ class Judge:
         """Return the cells of the atlas's geodesic grid at whose centre a declaration succeeds, shape (rows, cols)."""
         grid = self.atlas.geodesics.grid
         mask = np.zeros(grid.rows * grid.cols, dtype=np.bool_)
-        cells = [self._cells_near(place) for place in range(len(self.targets))]
-        for cell in np.unique(np.concatenate(cells)) if cells else ():
-            row, col = divmod(int(cell), grid.cols)
-            x_m, y_m = grid.min_x_m + (col + 0.5) * grid.cell_m, grid.min_y_m + (row + 0.5) * grid.cell_m
-            mask[cell] = self.success(x_m, y_m).success
+        near = [self._cells_near(place) for place in range(len(self.targets))]
+        cells = np.unique(np.concatenate(near)) if near else np.empty(0, dtype=np.int64)
+        rows, cols = np.divmod(cells, grid.cols)
+        xs_m, ys_m = grid.min_x_m + (cols + 0.5) * grid.cell_m, grid.min_y_m + (rows + 0.5) * grid.cell_m
+        for target in self.targets:
+            reach_m = self.success_radius_m + target.slack_m
+            west, south, east, north = target.shape.bounds
+            around = (xs_m >= west - reach_m) & (xs_m <= east + reach_m) & ~mask[cells]
+            left = np.flatnonzero(around & (ys_m >= south - reach_m) & (ys_m <= north + reach_m))
+            left = left[target.distances_m(xs_m[left], ys_m[left]) <= self.success_radius_m]
+            seen = sees_many(self.atlas, target, xs_m[left], ys_m[left], eye_m=self.camera_height_m)
+            mask[cells[left[seen]]] = True
         return mask.reshape(grid.rows, grid.cols)
 
     def blind_success_rate(self, places: Iterable[tuple[float, float]]) -> float:
@@ -335,17 +343,10 @@ class Judge:
         shape = target.shape if field is None else shapely.intersection(target.shape, field)
         if shape.is_empty:
             return False
-        item = self.atlas.world.objects[target.object_id]
-        height_m = item.size_m[2]
         at = shapely.Point(eye[0], eye[1])
         nearest = shapely.get_coordinates(shapely.shortest_line(at, shape))[1]
-        points = [(float(nearest[0]), float(nearest[1]))]
-        if item.object_class.kind not in {"area", "place"}:
-            if field is None or shapely.intersects_xy(field, item.x_m, item.y_m):
-                points.append((item.x_m, item.y_m))
-            corners = shapely.get_coordinates(shape)
-            points += [(float(x), float(y)) for x, y in corners[:: max(1, len(corners) // 4)]]
-        heights = (0.5 * height_m, 0.9 * height_m) if height_m > 1.0 else (0.5 * height_m,)
+        fixed, heights = marks_of(self.atlas.world, target, shape, field)
+        points = [(float(nearest[0]), float(nearest[1])), *fixed]
         clear = self.atlas.sight.clear
         return any(clear(*eye, x, y, z, ignore_object=target.object_id) for x, y in points for z in heights)
 

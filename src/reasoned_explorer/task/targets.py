@@ -53,6 +53,12 @@ class Target:
         """Return the distance from a point to where it satisfies, metres, to the micrometre."""
         return max(0.0, round(float(shapely.distance(self.shape, shapely.Point(x_m, y_m))) - self.slack_m, 6))
 
+    def distances_m(self, xs_m: NDArray[np.float64], ys_m: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the distance from each of many points, likewise."""
+        apart_m = shapely.distance(self.shape, shapely.points(xs_m, ys_m)) - self.slack_m
+        distances_m: NDArray[np.float64] = np.maximum(np.round(apart_m, 6), 0.0)
+        return distances_m
+
 
 class Grader:
     """Grades the objects of one world; keeps footprints, so that many goals of a world share the work.

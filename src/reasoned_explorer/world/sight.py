@@ -141,6 +141,22 @@ class SightLines:
         passed = pass_share(self.hiding, *_floats(*eye, *point), ignore_object, END_M, blocks_only=True)
         return bool(passed > 0.0)
 
+    def clear_many(
+        self, eyes_m: NDArray[np.float64], points_m: NDArray[np.float64], *, ignore_object: int = -1
+    ) -> NDArray[np.bool_]:
+        """Return what `clear` returns for many lines at once.
+
+        Args:
+            eyes_m: Where they begin, x, y and height, shape (n, 3).
+            points_m: Where they end, likewise.
+            ignore_object: An object that cuts nothing.
+        """
+        from reasoned_explorer.world.sight_kernels import clear_many
+
+        eyes, points = (np.ascontiguousarray(side, dtype=np.float64) for side in (eyes_m, points_m))
+        clear: NDArray[np.bool_] = clear_many(self.hiding, eyes, points, ignore_object)
+        return clear
+
     def visible_share(self, x_m: float, y_m: float, z_m: float, object_id: int) -> float:
         """Return the share of an object that is seen from a point, in [0, 1].
 

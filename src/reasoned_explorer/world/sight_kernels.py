@@ -247,6 +247,17 @@ def pass_share(
 
 
 @njit(cache=True)
+def clear_many(grid: Grid, eyes: FloatArray, points: FloatArray, ignore: int) -> NDArray[np.bool_]:
+    """Return which lines from eyes to points, both of shape (n, 3), nothing that blocks sight cuts."""
+    clear = np.empty(eyes.shape[0], np.bool_)
+    for k in range(eyes.shape[0]):
+        x0, y0, z0 = eyes[k, 0], eyes[k, 1], eyes[k, 2]
+        x1, y1, z1 = points[k, 0], points[k, 1], points[k, 2]
+        clear[k] = pass_share(grid, x0, y0, z0, x1, y1, z1, ignore, END_M, True) > 0.0
+    return clear
+
+
+@njit(cache=True)
 def first_hit(
     grid: Grid, x0: float, y0: float, z: float, sin_h: float, cos_h: float, max_m: float, kind: int
 ) -> tuple[float, int]:

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from reasoned_explorer.evaluation.bench.plan import BenchPlan
-from reasoned_explorer.evaluation.bench.pools import MAX_TRIES, run_in_processes
+from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
+from reasoned_explorer.evaluation.bench.pools import MAX_TRIES, Queues, run_in_processes
 from reasoned_explorer.evaluation.bench.runner import BenchProgress, Workers, run_bench, split_of
 from reasoned_explorer.evaluation.bench.store import RunStore
 from reasoned_explorer.task.split import Split
@@ -188,3 +188,22 @@ def test_a_mission_that_kills_its_process_has_failed_and_the_others_go_on(
     assert done[tasks[0].mission_id].failed
     assert f"its process died {MAX_TRIES} times" in done[tasks[0].mission_id].row
     assert [done[task.mission_id].failed for task in tasks[1:]] == [False, False]
+
+
+def test_a_worker_keeps_its_place_and_takes_from_others_at_the_end(small_plan: BenchPlan) -> None:
+    tasks = list(small_plan.tasks())
+    queues = Queues(small_plan, tasks, 2)
+    taken: dict[int, list[Task]] = {0: [], 1: []}
+    for _ in range(5):
+        for worker, mine in taken.items():
+            task = queues.take(worker)
+            assert task is not None
+            mine.append(task)
+    places = {worker: {small_plan.episode_of(task).place for task in mine} for worker, mine in taken.items()}
+    assert places[0].isdisjoint(places[1])
+    # Worker 1 is done with everything of its own; what worker 0 has left is shared.
+    rest = [task for _ in range(3) if (task := queues.take(1)) is not None]
+    assert len(rest) == 2
+    everything = [*taken[0], *taken[1], *rest, *queues.left()]
+    assert sorted(task.key for task in everything) == sorted(task.key for task in tasks)
+    assert queues.take(0) is None

@@ -3,10 +3,12 @@
 import os
 import signal
 import threading
+from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
 from multiprocessing import active_children, get_context, parent_process
 from typing import Any, TypeVar
 
@@ -17,7 +19,7 @@ from reasoned_explorer.model.stopping import stop_if_asked
 T = TypeVar("T")
 
 #: Missions handed out ahead, a worker: enough that none waits, few enough that memory does not grow with the run.
-_AHEAD = 3
+_AHEAD = 2
 #: A mission whose process died is tried so often; then it has failed.
 MAX_TRIES = 3
 #: While this process waits for others, it looks so often whether a person asks it to stop, seconds.
@@ -40,18 +42,17 @@ def run_in_processes(plan: BenchPlan, tasks: Sequence[Task], *, workers: int) ->
     A process that dies takes nothing with it but the missions that it was in: these are tried again. Processes whose
     parent is gone end by themselves.
     """
-    left = iter(tasks)
     with _one_thread_each():
-        while suspects := (yield from _run_pool(plan, left, workers)):
+        while suspects := (yield from _run_pool(plan, tasks, workers)):
             # Which of them it was cannot be known: each is tried alone, so that none fails for another.
-            for task in suspects:
+            for task in suspects.under_way:
                 yield from _run_alone(plan, task)
+            tasks = suspects.left
 
 
 def _run_alone(plan: BenchPlan, task: Task) -> Generator[Done, None, None]:
     for _ in range(1, MAX_TRIES):
-        suspects = yield from _run_pool(plan, iter([task]), 1)
-        if not suspects:
+        if (yield from _run_pool(plan, [task], 1)) is None:
             return
     yield lost(plan, task, f"its process died {MAX_TRIES} times")
 
@@ -61,34 +62,92 @@ def lost(plan: BenchPlan, task: Task, reason: str) -> Done:
     return Done(task, failed_row(plan, task, reason).as_json(), None, 0.0, failed=True, usd=0.0)
 
 
-def _run_pool(plan: BenchPlan, tasks: Iterator[Task], workers: int) -> Generator[Done, None, list[Task]]:
-    """Run missions until they are done or a process dies; return the missions that were under way when it did."""
-    under_way: dict[Future[Done], Task] = {}
-    broken: list[Task] = []
-    with _pool(workers, _begin, plan) as pool:
+@dataclass(frozen=True, slots=True)
+class _Broken:
+    """Where a run stood when a process died: the missions that its processes were in, and those to come."""
+
+    under_way: list[Task]
+    left: list[Task]
+
+
+def _run_pool(plan: BenchPlan, tasks: Sequence[Task], workers: int) -> Generator[Done, None, _Broken | None]:
+    """Run missions until they are done (returns None) or a process dies."""
+    queues = Queues(plan, tasks, workers)
+    under_way: dict[Future[Done], tuple[int, Task]] = {}
+    with ExitStack() as stack:
+        # A pool of one for each worker: a mission can then be given to the one that has its world open.
+        pools = [stack.enter_context(_pool(1, _begin, plan)) for _ in range(workers)]
+        busy = [0] * workers
         while True:
-            for task in tasks:
-                try:
-                    with _deaf():
-                        under_way[pool.submit(_run, task)] = task
-                except BrokenProcessPool:
-                    broken.append(task)
-                if broken or len(under_way) >= _AHEAD * workers:
-                    break
-            if not under_way:
-                return broken
+            died = False
+            for worker, pool in enumerate(pools):
+                while busy[worker] < _AHEAD and (task := queues.take(worker)) is not None:
+                    try:
+                        with _deaf():
+                            under_way[pool.submit(_run, task)] = worker, task
+                    except BrokenProcessPool:
+                        queues.put_back(worker, task)
+                        died = True
+                        break
+                    busy[worker] += 1
+            if not under_way and not died:
+                return None
             while not (done := wait(under_way, timeout=_LOOK_EVERY_S, return_when=FIRST_COMPLETED).done):
                 stop_if_asked()
             stop_if_asked()
+            broken = []
             for future in done:
-                task = under_way.pop(future)
+                worker, task = under_way.pop(future)
+                busy[worker] -= 1
                 try:
                     yield future.result()
                 except BrokenProcessPool:
                     broken.append(task)
-            if broken:
-                broken += under_way.values()
-                return broken
+            if broken or died:
+                return _Broken([*broken, *(task for _, task in under_way.values())], queues.left())
+
+
+class Queues:
+    """Which worker runs which mission: all of a place one worker's, until there are no places left to take.
+
+    A world that is open, and what a judge found out in it, then serve all missions of the place. At the end, who has
+    nothing left takes half of what the one with most has.
+
+    Args:
+        plan: Of the run.
+        tasks: Its missions, those of a place together.
+        workers: How many workers there are.
+    """
+
+    def __init__(self, plan: BenchPlan, tasks: Sequence[Task], workers: int) -> None:
+        self._places: deque[deque[Task]] = deque()
+        before = None
+        for task in tasks:
+            place = plan.episode_of(task).place
+            if place != before:
+                self._places.append(deque())
+                before = place
+            self._places[-1].append(task)
+        self._own: list[deque[Task]] = [deque() for _ in range(workers)]
+
+    def take(self, worker: int) -> Task | None:
+        """Return a worker's next mission, or None where nothing is left."""
+        own = self._own[worker]
+        if not own and self._places:
+            own = self._own[worker] = self._places.popleft()
+        elif not own:
+            richest = max(self._own, key=len)
+            for _ in range((len(richest) + 1) // 2):
+                own.appendleft(richest.pop())
+        return own.popleft() if own else None
+
+    def put_back(self, worker: int, task: Task) -> None:
+        """Give a mission back that could not be begun."""
+        self._own[worker].appendleft(task)
+
+    def left(self) -> list[Task]:
+        """Return all missions that nobody has taken, those of a place together."""
+        return [task for queue in (*self._own, *self._places) for task in queue]
 
 
 def map_in_processes(work: Callable[..., T], *columns: Iterable[Any], workers: int) -> list[T]:
