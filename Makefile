@@ -34,7 +34,7 @@ demo: $(READY) ## Run the main job: one mission in a generated park
 	  code=$$?; test $$code -le 1
 
 test: $(READY) ## Run the whole test suite
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest --numprocesses auto --maxprocesses 4
 
 check: $(READY) ## Format, lint, strict types, docstrings, directions of knowledge
 	$(BIN)/ruff format --check .
