@@ -1,6 +1,9 @@
+import pickle
+
 import pytest
 
 from reasoned_explorer.model import Fault, Gathering, GoalError, InputError, MissingDependencyError, UnknownNameError
+from reasoned_explorer.task.sampling import OutOfRangeError, SamplingSettings
 
 
 def test_all_faults_are_told_at_once() -> None:
@@ -46,3 +49,16 @@ def test_errors_of_one_type_stay_of_that_type() -> None:
     found.add(*(GoalError("goal", [Fault(what)]) for what in ("one", "two")))
     with pytest.raises(GoalError, match="2 faults"):
         found.finish("goals")
+
+
+def test_errors_come_out_of_another_process_as_they_went_in() -> None:
+
+    for error in (
+        InputError("goal", [Fault("it is empty", "a sentence")]),
+        UnknownNameError("planner", "llm-rtt", ("llm-rrt", "random")),
+        OutOfRangeError("park", "Find me a bench", SamplingSettings(), [1.0, 900.0]),
+    ):
+        again = pickle.loads(pickle.dumps(error))  # noqa: S301 - our own
+        assert type(again) is type(error)
+        assert str(again) == str(error)
+        assert again.__dict__ == error.__dict__

@@ -6,6 +6,8 @@ import pytest
 from reasoned_explorer.model import InputError, SettingsError, StartError, UnknownNameError, WorldError
 from reasoned_explorer.task.split import BANDS_M, LEVELS, Place
 from reasoned_explorer.task.splitting import Dealing, generated_places, make_split, open_place, places_of_worlds
+from reasoned_explorer.world.files import save_world
+from reasoned_explorer.world.generator import generate_world
 
 SHARED = Path(__file__).parents[2] / ".." / "shared" / "osm"
 PLAZA = Place("plaza:4@400", "plaza:4@400", district="plaza")
@@ -85,3 +87,21 @@ def test_what_cannot_be_made_is_refused() -> None:
         places_of_worlds(["nowhere.osm.pbf"])
     with pytest.raises(InputError, match="0 episodes a cell"):
         make_split("s", [PLAZA], per_cell=0, dealing=Dealing(1))
+
+
+def test_two_maps_of_one_name_are_two_cities(tmp_path: Path) -> None:
+    for folder, seed in (("x", 1), ("y", 2)):
+        (tmp_path / folder).mkdir()
+        save_world(generate_world("park", seed=seed, size_m=150), tmp_path / folder / "map.rexworld")
+    places = places_of_worlds([str(tmp_path / folder / "map.rexworld") for folder in ("x", "y")])
+    assert [place.name for place in places] == ["map", "map-2"]
+    assert len({place.source for place in places}) == 2
+
+
+def test_a_file_is_known_by_its_whole_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    save_world(generate_world("park", seed=1, size_m=150), tmp_path / "map.rexworld")
+    monkeypatch.chdir(tmp_path)
+    (place,) = places_of_worlds(["map.rexworld"])
+    assert place.source == str(tmp_path / "map.rexworld")
+    with pytest.raises(SettingsError, match="each world once"):
+        places_of_worlds(["map.rexworld", "./map.rexworld"])

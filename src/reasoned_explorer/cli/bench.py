@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 
+import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from reasoned_explorer.cli.answers import complain
+from reasoned_explorer.cli.answers import ExitCode, complain
 from reasoned_explorer.cli.parsing import parse_bbox, parse_levels, parse_planners, parse_seeds
 from reasoned_explorer.cli.sheets import print_sheet
 from reasoned_explorer.evaluation.bench.export import export
@@ -37,7 +38,7 @@ from reasoned_explorer.evaluation.mission_settings import MissionSettings
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.model import Fault, Gathering, InputError, SettingsError
 from reasoned_explorer.task.split import Place, Split
-from reasoned_explorer.task.splitting import Dealing, ceiling_casr, generated_places, places_of_worlds
+from reasoned_explorer.task.splitting import SPLIT_NAMES, Dealing, ceiling_casr, generated_places, places_of_worlds
 from reasoned_explorer.vehicles.registry import vehicle_profile
 
 #: What a split of worlds that a person names is dealt from, unless another seed is given.
@@ -93,7 +94,11 @@ def run_bench_from_options(options: BenchOptions) -> None:
     with RunStore.open(folder) as store:
         for sheet in sheets_of(store):
             print_sheet(console, sheet)
+        failed = store.failed()
     console.print(f"kept in {folder}: rex report {folder} makes a page of it", markup=False, soft_wrap=True)
+    if failed:
+        complain(f"a part failed in {failed} missions: they count as failures; see the column reason of rex export")
+        raise typer.Exit(ExitCode.PART_FAILED)
 
 
 def run_from_options(options: BenchOptions, *, names: Sequence[str] | None = None) -> Path:
@@ -269,7 +274,12 @@ def results_of(store: RunStore, plan: BenchPlan, vehicle: str) -> Results:
 def notes_on(results: Results, plan: BenchPlan) -> Notes:
     """Return what has to be said of one vehicle of a run."""
     rows = [row for mine in results.rows.values() for row in mine]
-    return notes_of(rows, total=plan.count // len(plan.vehicles))
+    notes = notes_of(rows, total=plan.count // len(plan.vehicles))
+    if plan.split.name.split("/")[0] in SPLIT_NAMES:
+        return notes
+    places = [place.name for place in plan.split.places]
+    shown = ", ".join(places[:8]) + (f" and {len(places) - 8} more" if len(places) > 8 else "")
+    return replace(notes, once=(*notes.once, f"Places: {shown}."))
 
 
 def sheets_of(store: RunStore) -> list[Sheet]:
@@ -309,14 +319,22 @@ def compare_runs(first: str, second: str) -> None:
         if not vehicles:
             said = f"{first} has {', '.join(plan.vehicles)}, {second} has {', '.join(their_plan.vehicles)}"
             raise InputError("comparison", [Fault(said, "runs with a vehicle in common")])
+        mine, its = plan.fingerprints(), their_plan.fingerprints()
+        same = {name for name, print_ in mine.items() if its.get(name) == print_}
+        if not same:
+            said = f"{first} is of {plan.split.label}, {second} of {their_plan.split.label}"
+            expected = "runs of the same missions: worlds, goals, starts, seeds and limits"
+            raise InputError("comparison", [Fault(f"no mission in common: {said}", expected)])
+        notes = [f"Set differently: {line}." for line in plan.differences(their_plan)]
         # All are made before one is printed: a fault of the last must not stand under half an answer.
         sheets = [
             compared_sheet(
-                results_of(ours, plan, vehicle),
-                results_of(theirs, their_plan, vehicle),
+                results_of(ours, plan, vehicle).of_missions(same),
+                results_of(theirs, their_plan, vehicle).of_missions(same),
                 names=(first, second),
                 methods=(one_method, other_method),
                 title=vehicle,
+                notes=notes,
             )
             for vehicle in vehicles
         ]

@@ -53,11 +53,22 @@ class InputError(ReasonedExplorerError):
         self.faults = tuple(faults)
         super().__init__(subject, self.faults)
 
+    def __reduce__(self) -> tuple[object, ...]:
+        # An error comes out of a worker process as it went in, whatever its own constructor asks for.
+        return _rebuilt, (type(self), self.subject, self.faults, self.__dict__)
+
     def __str__(self) -> str:
         if len(self.faults) == 1:
             return f"{self.subject}: {self.faults[0]}"
         listed = "\n".join(f"  - {fault}" for fault in self.faults)
         return f"{self.subject}: {len(self.faults)} faults\n{listed}"
+
+
+def _rebuilt(kind: type[InputError], subject: str, faults: tuple[Fault, ...], state: dict[str, object]) -> InputError:
+    error = kind.__new__(kind)
+    InputError.__init__(error, subject, faults)
+    error.__dict__.update(state)
+    return error
 
 
 class GoalError(InputError):

@@ -93,24 +93,41 @@ def places_of_worlds(
     Raises:
         InputError: If worlds cannot be opened, with all of these, or a name stands twice.
     """
-    if len(set(worlds)) < len(worlds):
+    # A run is gone on with from wherever one stands.
+    sources = [_absolute(world) for world in worlds]
+    if len(set(sources)) < len(sources):
         raise SettingsError("worlds", [Fault(f"{', '.join(worlds)}", "each world once")])
     places: list[Place] = []
     found = Gathering()
-    for source in worlds:
+    cities: Counter[str] = Counter()
+    for source in sources:
         world = found.take(partial(open_world, source, bbox=bbox), None)
         if world is None:
             continue
-        if world.origin is None:
-            places.append(Place(source, source, district=source.partition(":")[0].partition("@")[0]))
+        plain, _, permuted = source.partition("~")
+        stem = Path(plain).name.split(".")[0] if "/" in plain else plain.partition(":")[0].partition("@")[0]
+        if "/" not in plain:
+            places.append(Place(source, source, district=stem))
             continue
-        city = Path(source.partition("~")[0]).name.split(".")[0]
+        # Maps are often all called map.osm: the second of a name is another city.
+        cities[stem] += 1
+        city = stem if cities[stem] == 1 else f"{stem}-{cities[stem]}"
+        city += f"~{permuted}" if permuted else ""
+        if world.origin is None:
+            places.append(Place(city, source, city=city))
+            continue
         places += [
             Place(f"{city}#{number}", source, tile, city)
             for number, tile in enumerate(_neighbourhoods_deg(world.bounds, world.origin))
         ]
     found.finish("worlds")
     return tuple(places)
+
+
+def _absolute(world: str) -> str:
+    """Return a world's name, a file's with its whole path."""
+    plain, tilde, permuted = world.partition("~")
+    return f"{Path(plain).resolve()}{tilde}{permuted}" if Path(plain).is_file() else world
 
 
 def _neighbourhoods_deg(bounds: Bounds, origin: GeoOrigin) -> list[tuple[float, float, float, float]]:

@@ -72,3 +72,17 @@ def test_the_settings_of_a_method_and_the_numbers_of_the_base_are_checked(small_
 def test_what_is_no_plan_is_refused(data: dict[str, object]) -> None:
     with pytest.raises(InputError):
         BenchPlan.from_dict(data)
+
+
+def test_the_same_mission_is_known_by_all_that_decides_it(small_plan: BenchPlan) -> None:
+    mine = small_plan.fingerprints()
+    assert len(mine) == len(set(mine.values())) == 6
+    other = replace(small_plan, methods=("random",), base=replace(small_plan.base, captioner="perfect"))
+    assert other.fingerprints() == mine
+    assert small_plan.differences(other) == ["captioner: noisy / perfect"]
+    name = small_plan.split.places[0].name
+    elsewhere = replace(small_plan.split, world_digests={**small_plan.split.world_digests, name: "another world"})
+    its = replace(small_plan, split=elsewhere).fingerprints()
+    assert {key for key in mine if mine[key] != its[key]} == {
+        item.episode.id for item in small_plan.split.episodes if item.place == name
+    }

@@ -1,5 +1,4 @@
 import sqlite3
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -8,7 +7,7 @@ from reasoned_explorer.evaluation.bench.plan import BenchPlan
 from reasoned_explorer.evaluation.bench.runner import Workers, run_bench
 from reasoned_explorer.evaluation.bench.store import STORE_NAME, RunStore
 from reasoned_explorer.evaluation.bench.worker import run_task
-from reasoned_explorer.model import InputError, RecordError
+from reasoned_explorer.model import InputError, PartError, RecordError
 from reasoned_explorer.model.record import MissionEnd
 
 
@@ -100,14 +99,20 @@ def test_names_become_safe_names_of_files(store: RunStore) -> None:
     assert ".." not in str(path.relative_to(store.folder))
 
 
-def test_a_part_that_fails_is_a_row_and_no_exception(small_plan: BenchPlan) -> None:
-    # The file of a real place is gone when its turn comes.
-    split = small_plan.split
-    gone = replace(split, places=tuple(replace(place, source="gone.osm.pbf") for place in split.places))
-    done = run_task(replace(small_plan, split=gone), next(small_plan.tasks()))
+def test_a_part_that_fails_is_a_row_and_no_exception(
+    store: RunStore, small_plan: BenchPlan, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def failing(*_: object, **__: object) -> None:
+        raise PartError("captioner", "it answers nothing")
+
+    monkeypatch.setattr("reasoned_explorer.evaluation.bench.worker.Mission", failing)
+    task = next(small_plan.tasks())
+    done = run_task(small_plan, task)
     assert done.failed
     assert f'"end": "{MissionEnd.FAULT.value}"' in done.row
-    assert "gone.osm.pbf" in done.row
+    assert "it answers nothing" in done.row
+    store.add(task, done.row, trace=None, wall_s=0.0)
+    assert store.failed() == 1
 
 
 def test_more_planners_can_be_run_on_the_missions_of_a_run(store: RunStore) -> None:

@@ -10,7 +10,7 @@ from reasoned_explorer.evaluation.bench.worker import run_task
 from reasoned_explorer.evaluation.mission import Mission
 from reasoned_explorer.evaluation.record_file import parse_record, record_bytes
 from reasoned_explorer.evaluation.row import MissionRow
-from reasoned_explorer.model import InputError
+from reasoned_explorer.model import InputError, WorldError
 
 
 def test_what_missions_share_changes_no_result(small_plan: BenchPlan) -> None:
@@ -58,3 +58,14 @@ def test_infinite_lengths_survive(small_plan: BenchPlan) -> None:
     far = replace(row, score=replace(row.score, reference_length_m=float("inf"), distance_to_goal_m=float("inf")))
     assert json.loads(far.as_json())["score"]["reference_length_m"] is None
     assert MissionRow.from_json(far.as_json()) == far
+
+
+def test_a_world_that_is_gone_or_another_one_ends_the_run_and_is_no_mission_s_fault(small_plan: BenchPlan) -> None:
+    task = next(small_plan.tasks())
+    split = small_plan.split
+    gone = replace(split, places=tuple(replace(place, source="gone.osm.pbf") for place in split.places))
+    with pytest.raises(WorldError, match=r"gone\.osm\.pbf"):
+        run_task(replace(small_plan, split=gone), task)
+    other = replace(split, places=tuple(replace(place, source="park:99@300") for place in split.places))
+    with pytest.raises(WorldError, match="another world than the one that the run's missions are of"):
+        run_task(replace(small_plan, split=other), task)

@@ -118,6 +118,26 @@ class BenchPlan:
         name = self.split.episodes[index].episode.id
         return name if seed == 0 else f"{name}/seed{seed}"
 
+    def fingerprints(self) -> dict[str, str]:
+        """Return for each mission id what decides the mission itself: its world, goal, start, seed and limits.
+
+        Missions of two runs are the same where these are; who does what in them is another matter (`differences`).
+        """
+        found = {}
+        for index, item in enumerate(self.split.episodes):
+            plain = {**item.episode.as_dict(), "world_digest": self.split.world_digests[item.place]}
+            for seed in self.seeds:
+                said = json.dumps({**plain, "again": seed}, sort_keys=True, allow_nan=False)
+                found[self.mission_id(index, seed)] = hashlib.sha256(said.encode()).hexdigest()
+        return found
+
+    def differences(self, other: "BenchPlan") -> list[str]:
+        """Return in words what else two plans have their missions do differently: minds, captions, times, limits."""
+        mine, its = self.as_dict()["base"], other.as_dict()["base"]
+        lines = [(name, mine[name], its[name]) for name in mine if name != "explorer"]
+        lines += [(name, mine["explorer"][name], its["explorer"][name]) for name in mine["explorer"]]
+        return [f"{name}: {one} / {another}" for name, one, another in lines if one != another]
+
     def episode_of(self, task: Task) -> SplitEpisode:
         """Return a mission's episode."""
         return self.split.episodes[task.episode]

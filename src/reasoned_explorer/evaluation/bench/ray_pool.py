@@ -56,6 +56,9 @@ def run_on_ray(plan: BenchPlan, tasks: Sequence[Task], *, address: str, workers:
                 task = under_way.pop(reference)
                 try:
                     yield ray.get(reference)
+                except ray.exceptions.RayTaskError as error:
+                    # What the mission's code raised, not what became of its worker.
+                    raise error.cause from None
                 except ray.exceptions.RayError as error:
                     yield lost(plan, task, f"its worker was lost {MAX_TRIES} times: {type(error).__name__}")
     finally:

@@ -1,6 +1,6 @@
 """The rows of a run by method, and the figures of them that every table shows, on the screen and on a page."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from reasoned_explorer.evaluation.methods import BOUND_METHODS, PERFECT_HALT
@@ -37,6 +37,11 @@ class Results:
         for row in rows:
             by_method.setdefault(row.method, []).append(row)
         return cls({name: tuple(mine) for name, mine in by_method.items() if mine})
+
+    def of_missions(self, missions: Collection[str]) -> "Results":
+        """Return the results of some missions, by their ids; methods without a row of them are left out."""
+        kept = {name: tuple(row for row in mine if row.mission_id in missions) for name, mine in self.rows.items()}
+        return Results({name: mine for name, mine in kept.items() if mine}, self.seed)
 
     @property
     def methods(self) -> tuple[str, ...]:

@@ -89,6 +89,7 @@ def run_bench(store: RunStore, workers: Workers, on_done: Callable[[BenchProgres
         on_done: Called once before the first mission and after each.
 
     Raises:
+        WorldError: If the world of a mission is gone or is another one now; what is finished stays.
         RecordWriteError: If the store cannot be written; what was written stays, and the run can be gone on with.
         KeyboardInterrupt: If a person stops it; likewise.
         MissingDependencyError: If workers need what is not installed.

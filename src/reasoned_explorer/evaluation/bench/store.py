@@ -25,7 +25,7 @@ from reasoned_explorer.evaluation.row import MissionRow
 from reasoned_explorer.evaluation.scoring import MissionScore
 from reasoned_explorer.model import Fault, InputError, PartError, RecordError, RecordWriteError
 from reasoned_explorer.model.disk import disk_error, in_words
-from reasoned_explorer.model.record import EpisodeRecord
+from reasoned_explorer.model.record import EpisodeRecord, MissionEnd
 
 STORE_NAME = "run.sqlite"
 TRACES_NAME = "traces"
@@ -184,6 +184,12 @@ class RunStore:
         query = "SELECT row FROM missions WHERE (?1 IS NULL OR vehicle = ?1) AND (?2 IS NULL OR method = ?2)"
         for (line,) in self._connection.execute(query + " ORDER BY vehicle, method, mission_id", (vehicle, method)):
             yield MissionRow.from_json(line)
+
+    def failed(self) -> int:
+        """Return in how many missions a part failed."""
+        query = "SELECT count(*) FROM missions WHERE json_extract(row, '$.end') = ?"
+        count: int = self._connection.execute(query, (MissionEnd.FAULT.value,)).fetchone()[0]
+        return count
 
     def wall_s(self) -> float:
         """Return the seconds that all missions took on the machines that ran them, added up."""

@@ -125,6 +125,7 @@ def compared_sheet(
     names: tuple[str, str],
     methods: tuple[str | None, str | None],
     title: str = "",
+    notes: Sequence[str] = (),
 ) -> Sheet:
     """Return paired differences between two runs on the missions that both have.
 
@@ -134,6 +135,7 @@ def compared_sheet(
         names: What the runs are called.
         methods: A method of each, or None for all methods that both have.
         title: Of what, e.g. a vehicle; may be empty.
+        notes: What has to be said under it.
 
     Raises:
         InputError: If a method has no missions in its run, or the two have no mission in common.
@@ -159,7 +161,7 @@ def compared_sheet(
             "comparison", [Fault("the runs have no mission in common", "runs of the same split and seeds")]
         )
     of = f", {title}" if title else ""
-    return _differences(f"{names[0]} − {names[1]}{of}, on the same missions", found, ())
+    return _differences(f"{names[0]} − {names[1]}{of}, on the same missions", found, notes)
 
 
 def _same(ours: Results, theirs: Results) -> list[tuple[str, str]]:

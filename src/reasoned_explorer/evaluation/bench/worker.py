@@ -13,7 +13,7 @@ from reasoned_explorer.evaluation.mission import Mission, MissionResult, judge_o
 from reasoned_explorer.evaluation.record_file import record_bytes
 from reasoned_explorer.evaluation.row import MissionRow
 from reasoned_explorer.evaluation.scoring import MissionOutcome, MissionScore, score
-from reasoned_explorer.model import ReasonedExplorerError
+from reasoned_explorer.model import Fault, ReasonedExplorerError, WorldError
 from reasoned_explorer.model.record import MissionEnd, StepRecord
 from reasoned_explorer.task.judge import Judge
 from reasoned_explorer.task.split import Place, SplitEpisode
@@ -52,10 +52,18 @@ class Done:
 
 
 @lru_cache(maxsize=2)
-def _atlas_of(place: Place) -> Atlas:
-    # Missions of a place come together; the second is for the moment of changing over.
+def _atlas_of(place: Place, digest: str) -> Atlas:
+    """Open a place's world. Missions of a place come together; the second is for the moment of changing over.
+
+    Raises:
+        WorldError: If it cannot be opened, or is not the world that the split was made of.
+    """
     gc.unfreeze()
     atlas = open_place(place)
+    if atlas.digest != digest:
+        what = f"{place.source} is another world than the one that the run's missions are of"
+        expected = f"the world with the digest {digest[:12]}…; this one has {atlas.digest[:12]}…"
+        raise WorldError(f"place {place.name}", [Fault(what, expected, "put it back, or start a new run")])
     gc.collect()
     # A world has hundreds of thousands of parts and no garbage: looking through it after each mission takes 20 ms.
     gc.freeze()
@@ -63,21 +71,33 @@ def _atlas_of(place: Place) -> Atlas:
 
 
 @lru_cache(maxsize=64)
-def _judge_of(place: Place, episode: str, goal: str, vehicle: str, radius_m: float) -> Judge:  # noqa: ARG001 - a key
+def _judge_of(
+    world: tuple[Place, str],
+    episode: str,  # noqa: ARG001 - a key
+    goal: str,
+    vehicle: str,
+    radius_m: float,
+) -> Judge:
     """Return the judge of an episode: all methods share what it has found out about ways and sights."""
-    return judge_of(goal, _atlas_of(place), vehicle, radius_m)
+    return judge_of(goal, _atlas_of(*world), vehicle, radius_m)
 
 
 def run_task(plan: BenchPlan, task: Task) -> Done:
-    """Run a mission. What goes wrong in it is its outcome, never an exception."""
+    """Run a mission. What goes wrong in it is its outcome, never an exception.
+
+    Raises:
+        WorldError: If its world is gone or is another one now: no mission of the run can be trusted then.
+    """
     started_s = time.perf_counter()
     item = plan.episode_of(task)
     trace = None
+    place, goal = plan.split.place(item.place), item.episode.spec.text
+    world = place, plan.split.world_digests[place.name]
+    atlas = _atlas_of(*world)
     try:
         settings = plan.settings_of(task)
-        place, goal = plan.split.place(item.place), item.episode.spec.text
-        judge = _judge_of(place, item.episode.id, goal, settings.vehicle, settings.success_radius_m)
-        mission = Mission(goal, judge.atlas, settings, start=item.episode.start, judge=judge)
+        judge = _judge_of(world, item.episode.id, goal, settings.vehicle, settings.success_radius_m)
+        mission = Mission(goal, atlas, settings, start=item.episode.start, judge=judge)
         result = mission.run()
     except ReasonedExplorerError as error:
         row = failed_row(plan, task, str(error))
