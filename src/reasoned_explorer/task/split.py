@@ -104,6 +104,9 @@ class Split:
         # Where a file lies on a machine says nothing about what is in it; its digest does.
         for place in plain["places"]:
             place.pop("source")
+        # What is measured is the same from machine to machine to the millimetre, not to the last bit.
+        for item in plain["episodes"]:
+            item["reference_length_m"] = round(item["reference_length_m"] or 0.0, 3)
         return hashlib.sha256(json.dumps(plain, sort_keys=True, allow_nan=False).encode()).hexdigest()
 
     @property

@@ -126,6 +126,7 @@ class BenchPlan:
         found = {}
         for index, item in enumerate(self.split.episodes):
             plain = {**item.episode.as_dict(), "world_digest": self.split.world_digests[item.place]}
+            plain.pop("reference_length_m")  # follows from the rest
             for seed in self.seeds:
                 said = json.dumps({**plain, "again": seed}, sort_keys=True, allow_nan=False)
                 found[self.mission_id(index, seed)] = hashlib.sha256(said.encode()).hexdigest()
