@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 
 from reasoned_explorer.cli.app import app
 from reasoned_explorer.evaluation.bench.store import RunStore
+from tests.cli.full_disk import rex_with_files_up_to
 
 TINY = ["--world", "park:5@300", "--per-cell", "1", "--levels", "1", "--t-max", "2", "--workers", "1"]
 TWO = ["--planners", "nearest-frontier,llm-as-eval"]
@@ -291,3 +292,33 @@ def test_somebodys_web_site_is_not_replaced_by_a_report(run: tuple[Path, str], t
     assert code == 2
     assert "is no report" in shown
     assert (site / "index.html").read_text() == "<title>mine</title>"
+
+
+@pytest.mark.parametrize("most_bytes", [0, 1024])
+def test_a_run_that_finds_its_disk_full_leaves_nothing(most_bytes: int, tmp_path: Path) -> None:
+    ended = rex_with_files_up_to(most_bytes, "bench", *TINY, *ONE, "--out", "runs/run", "-q")
+    assert ended.returncode == 3, ended.stdout + ended.stderr
+    assert "ulimit -f" in ended.stderr
+    assert list((tmp_path / "here").iterdir()) == []
+
+
+def test_a_disk_that_gets_full_says_how_to_go_on(tmp_path: Path) -> None:
+    ended = rex_with_files_up_to(60_000, "bench", *TINY, *TWO, "--out", "run", "-q")
+    assert ended.returncode == 3, ended.stdout + ended.stderr
+    assert "go on with --resume run" in ended.stderr
+    assert "ulimit -f" in ended.stderr
+    assert _rex("bench", "--resume", "run", "-q", "--workers", "1")[0] == 0
+
+
+def test_a_run_is_read_where_nothing_can_be_written(run: tuple[Path, str], tmp_path: Path) -> None:
+    before = sorted(path.name for path in run[0].iterdir())
+    ended = rex_with_files_up_to(0, "compare", str(run[0]), str(run[0]))
+    # Its output is a pipe, which is never full.
+    assert ended.returncode == 0, ended.stderr
+    ended = rex_with_files_up_to(1024, "export", str(run[0]), str(tmp_path / "results.csv"))
+    assert ended.returncode == 3, ended.stderr
+    assert "results.csv cannot be written" in ended.stderr
+    ended = rex_with_files_up_to(1024, "bench", "--resume", str(run[0]))
+    assert ended.returncode == 3, ended.stderr
+    assert "ulimit -f" in ended.stderr
+    assert sorted(path.name for path in run[0].iterdir()) == before

@@ -56,7 +56,7 @@ def _run(
     options = replace(options, levels=levels, t_max_min=T_MAX_MIN, captioner=CAPTIONER)
     folder = run_from_options(options, names=names)
     sheets = []
-    with RunStore.open(folder) as store:
+    with RunStore.read(folder) as store:
         plan = store.plan
         for vehicle in plan.vehicles:
             results = results_of(store, plan, vehicle)
@@ -79,7 +79,7 @@ def _check_resumed(options: BenchOptions, method: str) -> None:
     """
     if options.resume is None:
         return
-    with RunStore.open(options.resume) as store:
+    with RunStore.read(options.resume) as store:
         others = [name for name in store.plan.methods if not name.startswith(method)]
     if others:
         fault = Fault(f"{options.resume} runs {', '.join(others)}", f"a run of this ablation ({method}…)", "rex bench")

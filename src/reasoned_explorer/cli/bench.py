@@ -35,7 +35,7 @@ from reasoned_explorer.evaluation.bench.tables import (
 from reasoned_explorer.evaluation.methods import methods
 from reasoned_explorer.evaluation.mission_settings import MissionSettings
 from reasoned_explorer.exploration.settings import ExplorerSettings
-from reasoned_explorer.model import Fault, Gathering, InputError, SettingsError
+from reasoned_explorer.model import Fault, Gathering, InputError, RecordWriteError, SettingsError
 from reasoned_explorer.task.split import Place, Split
 from reasoned_explorer.task.splitting import Dealing, ceiling_casr, generated_places, places_of_worlds
 from reasoned_explorer.vehicles.registry import vehicle_profile
@@ -90,7 +90,7 @@ def run_bench_from_options(options: BenchOptions) -> None:
     """Run a benchmark, show how far it is, and print its tables."""
     folder = run_from_options(options)
     console = Console(highlight=False)
-    with RunStore.open(folder) as store:
+    with RunStore.read(folder) as store:
         for sheet in sheets_of(store):
             print_sheet(console, sheet)
     console.print(f"kept in {folder}: rex report {folder} makes a page of it", markup=False, soft_wrap=True)
@@ -130,7 +130,7 @@ def run_from_options(options: BenchOptions, *, names: Sequence[str] | None = Non
                 console.print(line, markup=False, soft_wrap=True)
         try:
             _run(store, who, console, quiet=options.quiet)
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, RecordWriteError):
             complain(f"what is finished is kept: go on with --resume {folder}")
             raise
     return folder
@@ -303,7 +303,7 @@ def sheets_of(store: RunStore) -> list[Sheet]:
 def compare_runs(first: str, second: str) -> None:
     """Print paired differences between two runs, or two methods of runs, on the missions that both have."""
     (one, one_method), (other, other_method) = _run_and_method(first), _run_and_method(second)
-    with RunStore.open(one) as ours, RunStore.open(other) as theirs:
+    with RunStore.read(one) as ours, RunStore.read(other) as theirs:
         plan, their_plan = ours.plan, theirs.plan
         vehicles = [name for name in plan.vehicles if name in their_plan.vehicles]
         if not vehicles:
@@ -333,6 +333,6 @@ def _run_and_method(text: str) -> tuple[Path, str | None]:
 
 def export_run(run: Path, path: Path) -> None:
     """Write a run's results into a CSV or Parquet file."""
-    with RunStore.open(run) as store:
+    with RunStore.read(run) as store:
         count = export(store, path)
     Console(highlight=False).print(f"{count} missions in {path}", markup=False, soft_wrap=True)

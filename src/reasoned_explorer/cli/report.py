@@ -12,6 +12,6 @@ REPORT_NAME = "report"
 
 def write_run_report(run: Path, out: Path | None) -> None:
     """Write the report of a run into a folder, by default inside the run's own."""
-    with RunStore.open(run) as store:
+    with RunStore.read(run) as store:
         page = report_run(store, out or run / REPORT_NAME)
     Console(highlight=False).print(f"report in {page}", markup=False, soft_wrap=True)
