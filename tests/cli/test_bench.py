@@ -216,6 +216,23 @@ def test_everything_that_is_wrong_is_said_at_once(tmp_path: Path) -> None:
     assert list((tmp_path / "here").iterdir()) == []
 
 
+def test_everything_that_is_wrong_is_said_at_once_however_it_is_wrong() -> None:
+    bad = ["--world", "nope", "--bbox", "1,2", "--split-seed", "-1", "--vehicle", "zz", "--workers", "0", "--ray", "x"]
+    always = ("--split-seed: -1", "bounding box", "'zz'", "--workers: 0", "'x'", "'nope'")
+    code, shown = _rex("bench", "--levels", "7", "--planners", "llm-rrt:depth=x,random,zy,llm-rrt:depth", *bad)
+    assert code == 2, shown
+    for said in (*always, "depth is 'x'", "'zy'", "llm-rrt:depth: 'depth'", "level '7'"):
+        assert said in shown, said
+    code, shown = _rex("ablate", "depth", "--depths", "1,99,-2", "--minds", "nope", *bad)
+    assert code == 2, shown
+    for said in (*always, "'-2'", "1, 99", "mind: 'nope'"):
+        assert said in shown, said
+    code, shown = _rex("ablate", "minds", "--visionaries", "", "--evaluators", "nobody", *bad)
+    assert code == 2, shown
+    for said in (*always, "no visionary or no evaluator", "'nobody'"):
+        assert said in shown, said
+
+
 #: RUN is a run, ELSEWHERE one without a mission in common, FULL a folder with something else in it.
 BAD = {
     "an unknown planner": (["bench", "--planners", "llm-rtt"], "did you mean llm-rrt"),
@@ -250,6 +267,14 @@ BAD = {
     "a planner that a run has not": (["compare", "RUN::random", "RUN::llm-as-eval"], "has no missions of 'random'"),
     "a run to compare that is not there": (["compare", "RUN", "nothing"], "holds no run.sqlite"),
     "a format that is unknown": (["export", "RUN", "results.xls"], ".csv or .parquet"),
+    "no name to export to": (["export", "RUN", "."], ".; expected a name that ends in .csv"),
+    "no folder to export to": (["export", "RUN", "nowhere/results.csv"], "a folder that exists"),
+    "a name that is too long": ([*("bench", *TINY, *ONE), "--out", "n" * 300], "a name that is not too long"),
+    "a split beside worlds": (["bench", *TINY, *ONE, "--split", "full"], "worlds make a split of their own"),
+    "a checker that is to imagine": (["bench", "--minds", "perfect-halt"], "perfect-halt as visionary"),
+    "a checker to ablate": (["ablate", "minds", "--visionaries", "perfect-halt"], "perfect-halt as visionary"),
+    "no address of a cluster": (["bench", "--ray", "x"], "ray://"),
+    "an address where nobody is": ([*("bench", *TINY, *ONE), "--ray", "127.0.0.1:1"], "cannot be reached"),
     "no run to export": (["export", "nothing", "results.csv"], "holds no run.sqlite"),
     "no run to report": (["report", "nothing"], "holds no run.sqlite"),
     "a folder without a run to report": (["report", "FULL"], "holds no run.sqlite"),

@@ -2,6 +2,7 @@
 
 from rich.console import Console
 
+from reasoned_explorer.cli.console import Output
 from reasoned_explorer.minds import LATENCY_PROFILES, latency_profile
 from reasoned_explorer.minds.registry import MINDS
 from reasoned_explorer.perception.registry import CAPTIONERS
@@ -14,7 +15,7 @@ from reasoned_explorer.world.opening import WORLDS
 
 def print_names() -> None:
     """Print every registered name with its summary, and who brought it."""
-    console = Console(highlight=False)
+    console = Output()
     registries: tuple[tuple[str, Registry], ...] = (
         ("planners", PLANNERS),
         ("minds", MINDS),

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import typer
-from rich.console import Console
 
 from reasoned_explorer.cli.answers import ExitCode, complain
+from reasoned_explorer.cli.console import Output
 from reasoned_explorer.cli.parsing import BoxDeg, check_start_form, parse_bbox, parse_start
 from reasoned_explorer.cli.progress import Progress, header_lines, summary_lines
 from reasoned_explorer.evaluation.mission import Mission, MissionResult
@@ -115,7 +115,7 @@ class RunOptions:
 
 def run_from_options(options: RunOptions) -> None:
     """Run a mission, show it while it runs, keep its record and its map, and exit with what came of it."""
-    console = Console(highlight=False)
+    console = Output()
     settings, bbox, folder = options.checked()
     if not options.quiet and not _kernels_are_compiled():
         console.print("compiling the kernels, which takes up to a minute (the first time only) …", markup=False)
