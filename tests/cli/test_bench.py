@@ -3,6 +3,9 @@
 import csv
 import shutil
 import sqlite3
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -186,8 +189,47 @@ def test_the_ablation_of_depth_has_the_form_of_table_three() -> None:
     assert [line.split(" | ")[0] for line in shown.splitlines() if line.startswith("| L =")] == ["| L = 0", "| L = 2"]
     assert ".732 (.05)" in shown
     assert "GPT-4’s scores" in shown
+    assert "without error" in shown
+    assert "assumed" not in shown[: shown.index("σ is")] + shown[shown.index("GPT-4’s scores") :]
+    assert _rex("bench", "--resume", "run", "--add", "random", "-q", "--workers", "1")[0] == 0
     code, again = _rex("ablate", "depth", "--resume", "run", "-q")
-    assert (code, again) == (0, shown)
+    assert (code, again) == (0, shown), "a planner that was added is none of this table's"
+    code, shown = _rex("ablate", "minds", "--resume", "run", "-q")
+    assert code == 2
+    assert "this ablation" in shown
+
+
+def test_a_bench_under_other_conditions_is_no_ablation() -> None:
+    _made(Path("run"), *TINY, "--planners", "llm-rrt:depth=1", "--no-traces")
+    code, shown = _rex("ablate", "depth", "--resume", "run")
+    assert code == 2, shown
+    assert "captioner noisy" in shown
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX's here")
+def test_who_ends_a_bench_is_told_how_to_go_on() -> None:
+    bench = [sys.executable, "-m", "reasoned_explorer", "bench", *TINY[:2], "--per-cell", "20", "--workers", "1"]
+    with subprocess.Popen([*bench, *TWO, "--out", "run", "-q"], stderr=subprocess.PIPE, text=True) as process:
+        while not list(Path().glob("run/traces/**/*.z")):
+            assert process.poll() is None
+            time.sleep(0.05)
+        process.terminate()
+        said = process.communicate()[1]
+    assert process.returncode == 130, said
+    assert "go on with --resume run" in said
+
+
+def test_who_has_read_enough_does_not_end_a_bench() -> None:
+    bench = [sys.executable, "-m", "reasoned_explorer", "bench", *TINY, *ONE, "--out", "run"]
+    with subprocess.Popen(bench, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        if process.stdout is None or process.stderr is None:
+            raise AssertionError
+        process.stdout.close()
+        said = process.stderr.read()
+    assert process.returncode == 0, said
+    assert b"Broken" not in said
+    with RunStore.read(Path("run")) as store:
+        assert len(store.finished()) == 3
 
 
 def test_the_ablation_of_minds_has_the_form_of_table_four() -> None:

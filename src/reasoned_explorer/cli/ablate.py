@@ -84,7 +84,7 @@ def _run(
             results = Results({name: rows for name, rows in of_all.rows.items() if name.startswith(method)})
             about = f"{plan.split.label}, {vehicle}, T_max {T_MAX_MIN:g} min, captions without error"
             if results.methods:
-                sheets.append(sheet_of(results, title=f"{title}: {about}", notes=notes_on(results, plan).lines))
+                sheets.append(sheet_of(results, title=f"{title}: {about}", notes=notes_on(of_all, plan).lines))
     if not sheets:
         raise InputError("run", [NOTHING_FINISHED])
     console = Output()
