@@ -115,7 +115,7 @@ def main() -> None:
     parser.add_argument("run", type=Path)
     parser.add_argument("--only", nargs="+", choices=("all", "levels", "pairs", "headroom", "causes"))
     options = parser.parse_args()
-    with RunStore.open(options.run) as store:
+    with RunStore.read(options.run) as store:
         plan = store.plan
         results = Results.of(store.rows(vehicle=plan.vehicles[0]), plan.methods)
         print("\n".join(plan.split.lines()), end="\n\n")

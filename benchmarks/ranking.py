@@ -25,7 +25,7 @@ METRICS = ("SR", "SPL", "CASR per mission")
 
 def results_of(folder: Path) -> Results:
     """Return the results of a run's first vehicle, bounds left out."""
-    with RunStore.open(folder) as store:
+    with RunStore.read(folder) as store:
         plan = store.plan
         names = [name for name in plan.methods if not method(name).is_bound]
         rows = [row for row in store.rows(vehicle=plan.vehicles[0]) if row.method in names]

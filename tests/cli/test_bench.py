@@ -3,6 +3,9 @@
 import csv
 import shutil
 import sqlite3
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -10,6 +13,7 @@ from typer.testing import CliRunner
 
 from reasoned_explorer.cli.app import app
 from reasoned_explorer.evaluation.bench.store import RunStore
+from tests.cli.full_disk import rex_with_files_up_to
 
 TINY = ["--world", "park:5@300", "--per-cell", "1", "--levels", "1", "--t-max", "2", "--workers", "1"]
 TWO = ["--planners", "nearest-frontier,llm-as-eval"]
@@ -185,8 +189,47 @@ def test_the_ablation_of_depth_has_the_form_of_table_three() -> None:
     assert [line.split(" | ")[0] for line in shown.splitlines() if line.startswith("| L =")] == ["| L = 0", "| L = 2"]
     assert ".732 (.05)" in shown
     assert "GPT-4’s scores" in shown
+    assert "without error" in shown
+    assert "assumed" not in shown[: shown.index("σ is")] + shown[shown.index("GPT-4’s scores") :]
+    assert _rex("bench", "--resume", "run", "--add", "random", "-q", "--workers", "1")[0] == 0
     code, again = _rex("ablate", "depth", "--resume", "run", "-q")
-    assert (code, again) == (0, shown)
+    assert (code, again) == (0, shown), "a planner that was added is none of this table's"
+    code, shown = _rex("ablate", "minds", "--resume", "run", "-q")
+    assert code == 2
+    assert "this ablation" in shown
+
+
+def test_a_bench_under_other_conditions_is_no_ablation() -> None:
+    _made(Path("run"), *TINY, "--planners", "llm-rrt:depth=1", "--no-traces")
+    code, shown = _rex("ablate", "depth", "--resume", "run")
+    assert code == 2, shown
+    assert "captioner noisy" in shown
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX's here")
+def test_who_ends_a_bench_is_told_how_to_go_on() -> None:
+    bench = [sys.executable, "-m", "reasoned_explorer", "bench", *TINY[:2], "--per-cell", "20", "--workers", "1"]
+    with subprocess.Popen([*bench, *TWO, "--out", "run", "-q"], stderr=subprocess.PIPE, text=True) as process:
+        while not list(Path().glob("run/traces/**/*.z")):
+            assert process.poll() is None
+            time.sleep(0.05)
+        process.terminate()
+        said = process.communicate()[1]
+    assert process.returncode == 130, said
+    assert "go on with --resume run" in said
+
+
+def test_who_has_read_enough_does_not_end_a_bench() -> None:
+    bench = [sys.executable, "-m", "reasoned_explorer", "bench", *TINY, *ONE, "--out", "run"]
+    with subprocess.Popen(bench, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        if process.stdout is None or process.stderr is None:
+            raise AssertionError
+        process.stdout.close()
+        said = process.stderr.read()
+    assert process.returncode == 0, said
+    assert b"Broken" not in said
+    with RunStore.read(Path("run")) as store:
+        assert len(store.finished()) == 3
 
 
 def test_the_ablation_of_minds_has_the_form_of_table_four() -> None:
@@ -213,6 +256,23 @@ def test_everything_that_is_wrong_is_said_at_once(tmp_path: Path) -> None:
     ):  # fmt: skip
         assert said in shown, said
     assert list((tmp_path / "here").iterdir()) == []
+
+
+def test_everything_that_is_wrong_is_said_at_once_however_it_is_wrong() -> None:
+    bad = ["--world", "nope", "--bbox", "1,2", "--split-seed", "-1", "--vehicle", "zz", "--workers", "0", "--ray", "x"]
+    always = ("--split-seed: -1", "bounding box", "'zz'", "--workers: 0", "'x'", "'nope'")
+    code, shown = _rex("bench", "--levels", "7", "--planners", "llm-rrt:depth=x,random,zy,llm-rrt:depth", *bad)
+    assert code == 2, shown
+    for said in (*always, "depth is 'x'", "'zy'", "llm-rrt:depth: 'depth'", "level '7'"):
+        assert said in shown, said
+    code, shown = _rex("ablate", "depth", "--depths", "1,99,-2", "--minds", "nope", *bad)
+    assert code == 2, shown
+    for said in (*always, "'-2'", "1, 99", "mind: 'nope'"):
+        assert said in shown, said
+    code, shown = _rex("ablate", "minds", "--visionaries", "", "--evaluators", "nobody", *bad)
+    assert code == 2, shown
+    for said in (*always, "no visionary or no evaluator", "'nobody'"):
+        assert said in shown, said
 
 
 #: RUN is a run, ELSEWHERE one without a mission in common, FULL a folder with something else in it.
@@ -249,6 +309,14 @@ BAD = {
     "a planner that a run has not": (["compare", "RUN::random", "RUN::llm-as-eval"], "has no missions of 'random'"),
     "a run to compare that is not there": (["compare", "RUN", "nothing"], "holds no run.sqlite"),
     "a format that is unknown": (["export", "RUN", "results.xls"], ".csv or .parquet"),
+    "no name to export to": (["export", "RUN", "."], ".; expected a name that ends in .csv"),
+    "no folder to export to": (["export", "RUN", "nowhere/results.csv"], "a folder that exists"),
+    "a name that is too long": ([*("bench", *TINY, *ONE), "--out", "n" * 300], "a name that is not too long"),
+    "a split beside worlds": (["bench", *TINY, *ONE, "--split", "full"], "worlds make a split of their own"),
+    "a checker that is to imagine": (["bench", "--minds", "perfect-halt"], "perfect-halt as visionary"),
+    "a checker to ablate": (["ablate", "minds", "--visionaries", "perfect-halt"], "perfect-halt as visionary"),
+    "no address of a cluster": (["bench", "--ray", "x"], "ray://"),
+    "an address where nobody is": ([*("bench", *TINY, *ONE), "--ray", "127.0.0.1:1"], "cannot be reached"),
     "no run to export": (["export", "nothing", "results.csv"], "holds no run.sqlite"),
     "no run to report": (["report", "nothing"], "holds no run.sqlite"),
     "a folder without a run to report": (["report", "FULL"], "holds no run.sqlite"),
@@ -291,3 +359,33 @@ def test_somebodys_web_site_is_not_replaced_by_a_report(run: tuple[Path, str], t
     assert code == 2
     assert "is no report" in shown
     assert (site / "index.html").read_text() == "<title>mine</title>"
+
+
+@pytest.mark.parametrize("most_bytes", [0, 1024])
+def test_a_run_that_finds_its_disk_full_leaves_nothing(most_bytes: int, tmp_path: Path) -> None:
+    ended = rex_with_files_up_to(most_bytes, "bench", *TINY, *ONE, "--out", "runs/run", "-q")
+    assert ended.returncode == 3, ended.stdout + ended.stderr
+    assert "ulimit -f" in ended.stderr
+    assert list((tmp_path / "here").iterdir()) == []
+
+
+def test_a_disk_that_gets_full_says_how_to_go_on(tmp_path: Path) -> None:
+    ended = rex_with_files_up_to(60_000, "bench", *TINY, *TWO, "--out", "run", "-q")
+    assert ended.returncode == 3, ended.stdout + ended.stderr
+    assert "go on with --resume run" in ended.stderr
+    assert "ulimit -f" in ended.stderr
+    assert _rex("bench", "--resume", "run", "-q", "--workers", "1")[0] == 0
+
+
+def test_a_run_is_read_where_nothing_can_be_written(run: tuple[Path, str], tmp_path: Path) -> None:
+    before = sorted(path.name for path in run[0].iterdir())
+    ended = rex_with_files_up_to(0, "compare", str(run[0]), str(run[0]))
+    # Its output is a pipe, which is never full.
+    assert ended.returncode == 0, ended.stderr
+    ended = rex_with_files_up_to(1024, "export", str(run[0]), str(tmp_path / "results.csv"))
+    assert ended.returncode == 3, ended.stderr
+    assert "results.csv cannot be written" in ended.stderr
+    ended = rex_with_files_up_to(1024, "bench", "--resume", str(run[0]))
+    assert ended.returncode == 3, ended.stderr
+    assert "ulimit -f" in ended.stderr
+    assert sorted(path.name for path in run[0].iterdir()) == before

@@ -59,3 +59,29 @@ def test_the_doctor_says_what_is_there_and_how_to_get_the_rest(monkeypatch: pyte
 
 def test_the_version_is_said() -> None:
     assert _rex("--version")[1].startswith("rex 0.")
+
+
+def test_rows_groups_and_forms_of_worlds_are_listed() -> None:
+    shown = _rex("names")[1]
+    for said in ("oracle", "foresight-60m", "X+perfect-halt", "halts", "planners + bounds", "X~permuted:1", ".osm.pbf"):
+        assert said in shown, said
+
+
+def test_a_row_of_the_benchmark_is_told_from_an_unknown_planner() -> None:
+    for name in ("oracle", "llm-rrt+perfect-halt"):
+        code, shown = _rex("run", "Find me a bench", "--planner", name)
+        assert code == 2
+        assert "rex bench --planners" in shown
+
+
+def test_a_world_that_is_none_is_told_what_may_be_named() -> None:
+    for spec in ("park:7~permuted", "park~permuted:x", "town.osm~permute:1"):
+        code, shown = _rex("worlds", "inspect", spec)
+        assert code == 2
+        assert "park:7~permuted:1" in shown
+    assert ".osm.pbf" in _rex("worlds", "inspect", "nope")[1]
+
+
+def test_what_an_option_needs_is_not_taken_for_markup() -> None:
+    assert "reasoned-explorer[ray]" in _rex("bench", "--help")[1]
+    assert "1 for --world" in _rex("bench", "--help")[1]

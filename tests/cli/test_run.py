@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 
 from reasoned_explorer.cli.app import app
 from reasoned_explorer.evaluation.record_file import read_record
+from tests.cli.full_disk import rex_with_files_up_to
 
 FAST = ["--world", "plaza:3@200", "--seed", "1", "--no-map"]
 
@@ -259,18 +260,9 @@ def test_a_killed_mission_leaves_whole_steps_marked_incomplete(tmp_path: Path) -
     assert "INCOMPLETE" in _rex("show", "run")[1]
 
 
-def _rex_with_files_up_to(most_bytes: int, *arguments: str) -> "subprocess.CompletedProcess[str]":
-    """Run `rex` on a disk that is full for every file of so many bytes."""
-    script = (
-        f"import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, ({most_bytes}, {most_bytes}))\n"
-        "from reasoned_explorer.cli import main; sys.argv = ['rex', *sys.argv[1:]]; main()"
-    )
-    return subprocess.run([sys.executable, "-c", script, *arguments], capture_output=True, text=True, check=False)
-
-
 @pytest.mark.parametrize("most_bytes", [0, 1024])
 def test_a_disk_that_is_full_before_the_first_step_leaves_nothing(most_bytes: int, tmp_path: Path) -> None:
-    ended = _rex_with_files_up_to(most_bytes, "run", "Find me a bench", *FAST, "--out", "runs/run")
+    ended = rex_with_files_up_to(most_bytes, "run", "Find me a bench", *FAST, "--out", "runs/run")
     assert ended.returncode == 3, ended.stdout + ended.stderr
     assert "ulimit -f" in ended.stderr
     assert list(tmp_path.iterdir()) == []
@@ -315,7 +307,7 @@ FULL = {
 @pytest.mark.parametrize("what", FULL)
 def test_a_full_disk_is_no_bad_input_whatever_is_written(what: str, tmp_path: Path) -> None:
     code, arguments = FULL[what]
-    ended = _rex_with_files_up_to(2048, *arguments)
+    ended = rex_with_files_up_to(2048, *arguments)
     assert ended.returncode == code, ended.stdout + ended.stderr
     assert ("ulimit -f" in ended.stderr) == (code == 3)
     assert list(tmp_path.iterdir()) == []
@@ -323,7 +315,7 @@ def test_a_full_disk_is_no_bad_input_whatever_is_written(what: str, tmp_path: Pa
 
 def test_a_disk_that_is_full_when_the_map_is_drawn_leaves_the_whole_record() -> None:
     arguments = ["run", "Find me a bench", *FAST[:-1], "--minds", "oracle", "--max-steps", "3", "--out", "run"]
-    ended = _rex_with_files_up_to(150_000, *arguments)
+    ended = rex_with_files_up_to(150_000, *arguments)
     assert ended.returncode == 3, ended.stdout + ended.stderr
     assert "disk: run/map.png cannot be written" in ended.stderr
     assert {path.name for path in Path("run").iterdir()} == {"record.jsonl", "world.rexworld"}
@@ -332,7 +324,7 @@ def test_a_disk_that_is_full_when_the_map_is_drawn_leaves_the_whole_record() -> 
 
 def test_a_full_disk_ends_a_mission_in_words() -> None:
     goal = ["run", "Find me a museum", "--world", "town:1@500", "--out", "run", "--no-map"]
-    ended = _rex_with_files_up_to(60_000, *goal)
+    ended = rex_with_files_up_to(60_000, *goal)
     assert ended.returncode == 3, ended.stdout + ended.stderr
     assert "cannot be written" in ended.stderr
     assert Path("run/record.jsonl").read_bytes().endswith(b"}\n")

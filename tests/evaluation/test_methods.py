@@ -1,7 +1,8 @@
 import pytest
 
-from reasoned_explorer.evaluation.methods import GROUPS, method, methods
+from reasoned_explorer.evaluation.methods import GROUPS, method, methods, sound_methods
 from reasoned_explorer.evaluation.mission import MissionSettings
+from reasoned_explorer.evaluation.mission_settings import errors_of
 from reasoned_explorer.model import InputError, SettingsError, UnknownNameError
 
 BASE = MissionSettings(minds="embedded", checker=None, seed=5)
@@ -50,3 +51,18 @@ def test_all_names_that_are_wrong_are_told_at_once() -> None:
         methods([])
     with pytest.raises(SettingsError):
         method("llm-rrt:depth")
+
+
+def test_whose_minds_read_the_truth_is_a_bound_and_no_mind_has_a_role_that_it_does_not_fill() -> None:
+    assert method("llm-rrt@embedded/oracle").is_bound
+    assert not method("llm-rrt@embedded/embedded").is_bound
+    (error,) = errors_of(method("llm-rrt@perfect-halt/foresight-30m").settings(MissionSettings()))
+    assert "perfect-halt as visionary" in str(error)
+    assert errors_of(MissionSettings(evaluator="foresight-30m", checker="perfect-halt")) == ()
+
+
+def test_methods_that_can_be_read_are_told_from_those_that_cannot() -> None:
+    names = ["llm-rrt:depth", "random", "nope"]
+    assert [item.name for item in sound_methods(names)] == ["random"]
+    with pytest.raises(InputError, match=r"llm-rrt:depth: 'depth'; expected name=value(.|\n)*'nope'"):
+        methods(names)

@@ -100,3 +100,9 @@ def test_settings_of_the_agent_check_themselves() -> None:
     with pytest.raises(SettingsError) as raised:
         replace(ExplorerSettings(), views=0, t_max_s=math.nan)
     assert len(raised.value.faults) == 2
+
+
+def test_an_unknown_setting_of_a_planner_hides_no_wrong_one() -> None:
+    (error,) = errors_of(MissionSettings(planner_settings={"depth": "x", "foo": 3}))
+    assert "no setting 'foo'" in str(error)
+    assert "depth is 'x'" in str(error)

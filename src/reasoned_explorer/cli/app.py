@@ -43,7 +43,11 @@ def run(
     goal: Annotated[str, typer.Argument(help='What to find, e.g. "Find me a fire hydrant, but stay on the road".')],
     *,
     world: Annotated[
-        str, typer.Option(help="A district (park, downtown:7, town@800 …), a .osm/.osm.pbf file, or a .rexworld file.")
+        str,
+        typer.Option(
+            help="A district (park, downtown:7, town@800 …), a .osm/.osm.pbf file, or a .rexworld file; "
+            "~permuted:SEED behind it deals its labels anew."
+        ),
     ] = "park:7",
     bbox: Annotated[str | None, typer.Option(help="Crop an OpenStreetMap file: lon0,lat0,lon1,lat1 (degrees).")] = None,
     start: Annotated[

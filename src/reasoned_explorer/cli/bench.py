@@ -4,7 +4,9 @@ import os
 import shlex
 import sys
 from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 
@@ -13,12 +15,13 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from reasoned_explorer.cli.answers import ExitCode, complain
+from reasoned_explorer.cli.console import Output
 from reasoned_explorer.cli.parsing import parse_bbox, parse_levels, parse_planners, parse_seeds
 from reasoned_explorer.cli.sheets import print_sheet
 from reasoned_explorer.evaluation.bench.export import export
 from reasoned_explorer.evaluation.bench.notes import Notes, notes_of
 from reasoned_explorer.evaluation.bench.plan import BenchPlan
-from reasoned_explorer.evaluation.bench.ray_pool import require_ray
+from reasoned_explorer.evaluation.bench.ray_pool import check_address, joined, require_ray
 from reasoned_explorer.evaluation.bench.results import Results
 from reasoned_explorer.evaluation.bench.runner import BenchProgress, Workers, run_bench, split_of
 from reasoned_explorer.evaluation.bench.store import NOTHING_FINISHED, RunStore
@@ -33,23 +36,27 @@ from reasoned_explorer.evaluation.bench.tables import (
     paper_sheets,
     vehicles_sheet,
 )
-from reasoned_explorer.evaluation.methods import methods
+from reasoned_explorer.evaluation.methods import methods, sound_methods
 from reasoned_explorer.evaluation.mission_settings import MissionSettings
 from reasoned_explorer.exploration.settings import ExplorerSettings
-from reasoned_explorer.model import Fault, Gathering, InputError, SettingsError
+from reasoned_explorer.model import Fault, Gathering, InputError, RecordWriteError, SettingsError
+from reasoned_explorer.model.checks import is_there
 from reasoned_explorer.task.split import Place, Split
 from reasoned_explorer.task.splitting import SPLIT_NAMES, Dealing, ceiling_casr, generated_places, places_of_worlds
 from reasoned_explorer.vehicles.registry import vehicle_profile
+from reasoned_explorer.world.opening import check_world_name
 
 #: What a split of worlds that a person names is dealt from, unless another seed is given.
 OWN_SPLIT_SEED = 1
+#: What is run where a person names neither a split nor worlds.
+SPLIT = "mini"
 
 
 @dataclass(frozen=True, slots=True)
 class BenchOptions:
     """What a person typed; see ``rex bench --help``."""
 
-    split: str = "mini"
+    split: str | None = None
     planners: str = "default"
     worlds: tuple[str, ...] = ()
     bbox: str | None = None
@@ -90,8 +97,8 @@ class BenchOptions:
 def run_bench_from_options(options: BenchOptions) -> None:
     """Run a benchmark, show how far it is, and print its tables."""
     folder = run_from_options(options)
-    console = Console(highlight=False)
-    with RunStore.open(folder) as store:
+    console = Output()
+    with RunStore.read(folder) as store:
         for sheet in sheets_of(store):
             print_sheet(console, sheet)
         failed = store.failed()
@@ -101,44 +108,60 @@ def run_bench_from_options(options: BenchOptions) -> None:
         raise typer.Exit(ExitCode.PART_FAILED)
 
 
-def run_from_options(options: BenchOptions, *, names: Sequence[str] | None = None) -> Path:
+def run_from_options(
+    options: BenchOptions, *, names: Sequence[str] | None = None, wrong: Sequence[InputError] = ()
+) -> Path:
     """Run a benchmark and return the folder of its run.
 
     Args:
         options: What was typed.
         names: Methods, where the options' planners do not say them.
+        wrong: What else is wrong with what was typed, to be told beside it.
 
     Raises:
         InputError: If something typed cannot be used.
         MissingDependencyError: If it needs what is not installed.
         RecordWriteError: If the disk is full.
     """
-    console = Console(highlight=False, stderr=True)
+    console = Output(stderr=True)
     if options.ray is not None:
         require_ray()
-    if options.resume is not None:
-        who = options.who
-        more = [item.name for item in methods(parse_planners(options.add))] if options.add else []
-        folder, store = options.resume, RunStore.open(options.resume)
-    else:
-        if options.add:
-            raise SettingsError("--add", [Fault(f"{options.add} without --resume", "a run to add to", "--resume RUN")])
-        plan = _plan(options, names or parse_planners(options.planners))
-        who, more = options.who, []
-        folder = options.out or _free_folder(plan)
-        store = RunStore.create(folder, plan, _about())
-    with store:
-        if more:
-            store.extend(more)
+    with ExitStack() as stack:
+        folder, store = _store_of(options, names, wrong, stack)
         if not options.quiet:
             for line in about_split(store.plan.split, store.plan.vehicles):
                 console.print(line, markup=False, soft_wrap=True)
         try:
-            _run(store, who, console, quiet=options.quiet)
-        except KeyboardInterrupt:
+            _run(store, options.who, console, quiet=options.quiet)
+        except (KeyboardInterrupt, RecordWriteError):
             complain(f"what is finished is kept: go on with --resume {folder}")
             raise
     return folder
+
+
+def _store_of(
+    options: BenchOptions, names: Sequence[str] | None, wrong: Sequence[InputError], stack: ExitStack
+) -> tuple[Path, RunStore]:
+    """Return the folder and the store of the run that is to be run; what has to be ended afterwards is put on a stack.
+
+    A cluster is joined before anything is made on disk.
+    """
+    if options.resume is not None:
+        who = options.who
+        if options.ray is not None:
+            check_address(options.ray)
+        more = [item.name for item in methods(parse_planners(options.add))] if options.add else []
+        if options.ray is not None:
+            stack.enter_context(joined(options.ray, who.count))
+        store = stack.enter_context(RunStore.open(options.resume))
+        if more:
+            store.extend(more)
+        return options.resume, store
+    plan = _plan(options, parse_planners(options.planners) if names is None else names, wrong)
+    if options.ray is not None:
+        stack.enter_context(joined(options.ray, options.who.count))
+    folder = options.out or _free_folder(plan)
+    return folder, stack.enter_context(RunStore.create(folder, plan, _about()))
 
 
 def about_split(split: Split, vehicles: Sequence[str]) -> list[str]:
@@ -173,7 +196,7 @@ def _pace(progress: BenchProgress) -> str:
     return f"{progress.a_second:.1f}/s, {minutes}:{seconds:02d} left, {progress.failed} failed, ${progress.usd:.2f}"
 
 
-def _plan(options: BenchOptions, names: Sequence[str]) -> BenchPlan:
+def _plan(options: BenchOptions, names: Sequence[str], wrong: Sequence[InputError]) -> BenchPlan:
     """Return what is to be run; nothing is made on disk before all of it is known to be right.
 
     Raises:
@@ -181,7 +204,13 @@ def _plan(options: BenchOptions, names: Sequence[str]) -> BenchPlan:
         InputError: If no split can be made of it.
     """
     found = Gathering()
-    chosen = found.take(lambda: methods(names), None)
+    found.add(*wrong)
+    if options.add:
+        fault = Fault(f"{options.add} without --resume", "a run to add to", "--resume RUN")
+        found.add(SettingsError("--add", [fault]))
+    if names or not wrong:
+        found.check(lambda: methods(names))
+    sound = tuple(item.name for item in sound_methods(names)) or ("random",)
     explorer = found.take(lambda: ExplorerSettings(t_max_s=options.t_max_min * 60.0), ExplorerSettings())
     nothing: tuple[int, ...] = ()
     seeds = found.take(lambda: parse_seeds(options.seeds), nothing) or (0,)
@@ -200,7 +229,7 @@ def _plan(options: BenchOptions, names: Sequence[str]) -> BenchPlan:
     unmade = found.take(
         lambda: BenchPlan(
             split=Split("unmade", 0, (), (), {}),
-            methods=tuple(item.name for item in chosen) if chosen else ("random",),
+            methods=sound,
             vehicles=tuple(name.strip() for name in options.vehicle.split(",") if name.strip()),
             base=base,
             seeds=seeds,
@@ -211,10 +240,15 @@ def _plan(options: BenchOptions, names: Sequence[str]) -> BenchPlan:
     workers = found.take(lambda: options.who, None)
     if options.per_cell is not None and not 1 <= options.per_cell <= 1000:
         found.add(SettingsError("--per-cell", [Fault(f"{options.per_cell}", "1 to 1,000")]))
-    if options.out is not None and options.out.exists() and not _is_empty(options.out):
+    if options.split_seed is not None and not 0 <= options.split_seed < 1 << 63:
+        found.add(SettingsError("--split-seed", [Fault(f"{options.split_seed}", "a whole number from 0 to 2^63 - 1")]))
+    if options.ray is not None:
+        address = options.ray
+        found.check(lambda: check_address(address))
+    if options.out is not None and is_there(options.out) and not _is_empty(options.out):
         fault = Fault(f"{options.out} is there", "a new or empty folder", "or go on with it: --resume")
         found.add(SettingsError("--out", [fault]))
-    places = found.take(lambda: _places(options), None)
+    places = _places(options, found)
     found.finish("benchmark")
     if unmade is None or workers is None or places is None:  # their errors were raised
         raise AssertionError
@@ -225,20 +259,29 @@ def _is_empty(folder: Path) -> bool:
     return folder.is_dir() and not any(folder.iterdir())
 
 
-def _places(options: BenchOptions) -> tuple[tuple[Place, ...], int, int]:
-    """Return where the episodes take place, how many each place deals per cell, and the seed."""
-    bbox = parse_bbox(options.bbox)
-    if options.worlds:
-        return places_of_worlds(options.worlds, bbox=bbox), 2, OWN_SPLIT_SEED
-    if bbox is not None:
-        raise SettingsError("--bbox", [Fault(f"{options.bbox} without --world", "an OpenStreetMap file to crop")])
-    return generated_places(options.split)
+def _places(options: BenchOptions, found: Gathering) -> tuple[tuple[Place, ...], int, int] | None:
+    """Return where the episodes take place, how many each place deals per cell, and the seed; keep what is wrong."""
+    bbox = found.take(lambda: parse_bbox(options.bbox), None)
+    if not options.worlds:
+        if options.bbox is not None:
+            fault = Fault(f"{options.bbox} without --world", "an OpenStreetMap file to crop")
+            found.add(SettingsError("--bbox", [fault]))
+        return found.take(lambda: generated_places(options.split or SPLIT), None)
+    if options.split is not None:
+        fault = Fault(f"{options.split} beside --world", "one of the two", "worlds make a split of their own")
+        found.add(SettingsError("--split", [fault]))
+    for world in options.worlds:
+        found.check(partial(check_world_name, world, bbox=bbox))
+    if found.errors:
+        return None  # reading worlds takes long, and something is wrong already
+    places = found.take(lambda: places_of_worlds(options.worlds, bbox=bbox), None)
+    return None if places is None else (places, 2, OWN_SPLIT_SEED)
 
 
 def _split(
     options: BenchOptions, places: tuple[Place, ...], per_cell: int, seed: int, *, levels: tuple[int, ...], workers: int
 ) -> Split:
-    name = "own" if options.worlds else options.split
+    name = "own" if options.worlds else options.split or SPLIT
     if options.split_seed is not None or (not options.worlds and options.per_cell is not None):
         name = f"{name}-own"
     dealing = Dealing(
@@ -313,7 +356,7 @@ def sheets_of(store: RunStore) -> list[Sheet]:
 def compare_runs(first: str, second: str) -> None:
     """Print paired differences between two runs, or two methods of runs, on the missions that both have."""
     (one, one_method), (other, other_method) = _run_and_method(first), _run_and_method(second)
-    with RunStore.open(one) as ours, RunStore.open(other) as theirs:
+    with RunStore.read(one) as ours, RunStore.read(other) as theirs:
         plan, their_plan = ours.plan, theirs.plan
         vehicles = [name for name in plan.vehicles if name in their_plan.vehicles]
         if not vehicles:
@@ -338,7 +381,7 @@ def compare_runs(first: str, second: str) -> None:
             )
             for vehicle in vehicles
         ]
-    console = Console(highlight=False)
+    console = Output()
     for sheet in sheets:
         print_sheet(console, sheet)
 
@@ -351,6 +394,6 @@ def _run_and_method(text: str) -> tuple[Path, str | None]:
 
 def export_run(run: Path, path: Path) -> None:
     """Write a run's results into a CSV or Parquet file."""
-    with RunStore.open(run) as store:
+    with RunStore.read(run) as store:
         count = export(store, path)
-    Console(highlight=False).print(f"{count} missions in {path}", markup=False, soft_wrap=True)
+    Output().print(f"{count} missions in {path}", markup=False, soft_wrap=True)

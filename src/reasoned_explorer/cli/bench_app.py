@@ -11,6 +11,10 @@ from reasoned_explorer.model import Fault, SettingsError
 ablate_app = typer.Typer(
     help="The paper's ablations: level 1, T_max 15 minutes, captions without error.", no_args_is_help=True
 )
+_SplitSeed = Annotated[
+    int | None,
+    typer.Option(help="Deal other episodes.", show_default="the split's own; 1 for --world"),
+]
 Run = Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a run of rex bench.")]
 
 
@@ -50,7 +54,10 @@ def _refuse_beside_resume(context: typer.Context) -> None:
 def bench(
     context: typer.Context,
     *,
-    split: Annotated[str, typer.Option(help="mini (about a minute) or full (at least 400 missions).")] = "mini",
+    split: Annotated[
+        str | None,
+        typer.Option(help="mini (about a minute) or full (at least 400 missions).", show_default="mini"),
+    ] = None,
     planners: Annotated[
         str,
         typer.Option(
@@ -64,14 +71,14 @@ def bench(
             "--world",
             "--worlds",
             help="Make a split of these worlds instead; may be repeated. Real places "
-            "are cut into neighbourhoods of about 1 km².",
+            "are cut into neighbourhoods of about 1 km². NAME~permuted:SEED deals its labels anew.",
         ),
     ] = None,
     bbox: Annotated[str | None, typer.Option(help="Crop OpenStreetMap files: lon0,lat0,lon1,lat1 (degrees).")] = None,
     per_cell: Annotated[
         int | None, typer.Option(help="Episodes of each level and distance in each place (there are 12 such cells).")
     ] = None,
-    split_seed: Annotated[int | None, typer.Option(min=0, help="Deal other episodes.")] = None,
+    split_seed: _SplitSeed = None,
     levels: Annotated[str, typer.Option(help="Only these levels, with commas.")] = "",
     seeds: Annotated[
         str, typer.Option(help="Run each episode with each of these; other seeds make other captions and draws.")
@@ -90,7 +97,7 @@ def bench(
         int | None, typer.Option(help="Processes on this machine; as many as processors by default.")
     ] = None,
     ray: Annotated[
-        str | None, typer.Option(help="Run on a Ray cluster: auto, or its address. Needs reasoned-explorer[ray].")
+        str | None, typer.Option(help=r"Run on a Ray cluster: auto, or its address. Needs reasoned-explorer\[ray].")
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder of the run; runs/bench-… by default.")] = None,
     resume: Annotated[
@@ -178,13 +185,12 @@ def report(
     write_run_report(run, out)
 
 
-_Split = Annotated[str, typer.Option(help="mini or full; only its level 1 is run.")]
+_Split = Annotated[str | None, typer.Option(help="mini or full; only its level 1 is run.", show_default="full")]
 _Worlds = Annotated[
     list[str] | None, typer.Option("--world", "--worlds", help="A split of these worlds instead; may be repeated.")
 ]
 _Bbox = Annotated[str | None, typer.Option(help="Crop OpenStreetMap files: lon0,lat0,lon1,lat1 (degrees).")]
 _PerCell = Annotated[int | None, typer.Option(help="Episodes of each distance in each place.")]
-_SplitSeed = Annotated[int | None, typer.Option(min=0, help="Deal other episodes.")]
 _Seeds = Annotated[str, typer.Option(help="Run each episode with each of these.")]
 _Vehicle = Annotated[str, typer.Option(help="Vehicle profiles with commas.")]
 _Latency = Annotated[str, typer.Option(help="How long modelled calls take.")]
@@ -202,7 +208,7 @@ def ablate_depth_(
     context: typer.Context,
     *,
     depths: Annotated[str, typer.Option(help="L, with commas.")] = "0,1,2,3,4",
-    split: _Split = "full",
+    split: _Split = None,
     worlds: _Worlds = None,
     bbox: _Bbox = None,
     per_cell: _PerCell = None,
@@ -254,7 +260,7 @@ def ablate_minds_(
     visionaries: Annotated[str, typer.Option(help="Minds that imagine, with commas.")] = "embedded,embedded-unknowing",
     evaluators: Annotated[str, typer.Option(help="Minds that score, with commas.")] = "embedded,embedded-unknowing",
     checker: Annotated[str, typer.Option(help="Who notices the goal.")] = "embedded",
-    split: _Split = "full",
+    split: _Split = None,
     worlds: _Worlds = None,
     bbox: _Bbox = None,
     per_cell: _PerCell = None,

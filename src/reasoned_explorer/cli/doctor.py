@@ -6,9 +6,8 @@ import sys
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 
-from rich.console import Console
-
 from reasoned_explorer import __version__
+from reasoned_explorer.cli.console import Output
 
 _SUPPORTED = ((3, 11), (3, 13))
 
@@ -88,7 +87,7 @@ def is_importable(module: str) -> bool:
 
 def print_report() -> None:
     """Print what is installed, what is missing and how to get it."""
-    console = Console(highlight=False)
+    console = Output()
 
     def say(line: str) -> None:
         console.print(line, markup=False, soft_wrap=True)

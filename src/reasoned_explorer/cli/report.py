@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from rich.console import Console
-
+from reasoned_explorer.cli.console import Output
 from reasoned_explorer.evaluation.bench.store import RunStore
 from reasoned_explorer.evaluation.report.of_run import report_run
 
@@ -12,6 +11,6 @@ REPORT_NAME = "report"
 
 def write_run_report(run: Path, out: Path | None) -> None:
     """Write the report of a run into a folder, by default inside the run's own."""
-    with RunStore.open(run) as store:
+    with RunStore.read(run) as store:
         page = report_run(store, out or run / REPORT_NAME)
-    Console(highlight=False).print(f"report in {page}", markup=False, soft_wrap=True)
+    Output().print(f"report in {page}", markup=False, soft_wrap=True)

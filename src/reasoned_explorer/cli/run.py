@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import typer
-from rich.console import Console
 
 from reasoned_explorer.cli.answers import ExitCode, complain
+from reasoned_explorer.cli.console import Output
 from reasoned_explorer.cli.parsing import BoxDeg, check_start_form, parse_bbox, parse_start
 from reasoned_explorer.cli.progress import Progress, header_lines, summary_lines
+from reasoned_explorer.evaluation.methods import BOUND_METHODS
 from reasoned_explorer.evaluation.mission import Mission, MissionResult
 from reasoned_explorer.evaluation.mission_settings import MissionSettings, errors_of
 from reasoned_explorer.exploration.settings import ExplorerSettings
@@ -82,6 +83,9 @@ class RunOptions:
             seed=self.seed,
         )
         found.add(*errors_of(settings))
+        if self.planner in BOUND_METHODS or "+" in self.planner or ":" in self.planner or "@" in self.planner:
+            fault = Fault(f"{self.planner!r}", "a planner by its name alone", "it may be a row of rex bench --planners")
+            found.add(SettingsError("--planner", [fault]))
         return settings
 
     def _explorer(self) -> ExplorerSettings:
@@ -115,7 +119,7 @@ class RunOptions:
 
 def run_from_options(options: RunOptions) -> None:
     """Run a mission, show it while it runs, keep its record and its map, and exit with what came of it."""
-    console = Console(highlight=False)
+    console = Output()
     settings, bbox, folder = options.checked()
     if not options.quiet and not _kernels_are_compiled():
         console.print("compiling the kernels, which takes up to a minute (the first time only) …", markup=False)

@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from rich.console import Console
-
+from reasoned_explorer.cli.console import Output
 from reasoned_explorer.cli.progress import Progress, header_lines, step_details, summary_lines
 from reasoned_explorer.evaluation.record_file import read_record
 from reasoned_explorer.model import Fault, RecordError
@@ -17,7 +16,7 @@ def show_run(folder: Path, *, step: int | None = None) -> None:
         RecordError: If there is no such record or step.
     """
     record = read_record(folder)
-    console = Console(highlight=False)
+    console = Output()
 
     def say(line: str) -> None:
         console.print(line, markup=False, soft_wrap=True)

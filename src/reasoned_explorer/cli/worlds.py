@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from rich.console import Console
-
+from reasoned_explorer.cli.console import Output
 from reasoned_explorer.cli.parsing import parse_bbox
 from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.world.files import save_world
@@ -14,7 +13,7 @@ from reasoned_explorer.world.world import World
 
 
 def _say(line: str) -> None:
-    Console(highlight=False).print(line, markup=False, soft_wrap=True)
+    Output().print(line, markup=False, soft_wrap=True)
 
 
 def list_worlds() -> None:

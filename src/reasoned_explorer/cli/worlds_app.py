@@ -12,7 +12,9 @@ worlds_app = typer.Typer(help="Generate, import, inspect and draw worlds.", no_a
 _Spec = Annotated[
     str,
     typer.Argument(
-        metavar="WORLD", help="A district (park, downtown:7, town@800 …), an OSM file, or a .rexworld file."
+        metavar="WORLD",
+        help="A district (park, downtown:7, town@800 …), an OSM file, or a .rexworld file; ~permuted:SEED may "
+        "stand behind it.",
     ),
 ]
 _Bbox = Annotated[str | None, typer.Option(help="Crop an OpenStreetMap file: lon0,lat0,lon1,lat1 (degrees).")]

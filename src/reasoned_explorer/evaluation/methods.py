@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from reasoned_explorer.evaluation.mission_settings import MissionSettings
+from reasoned_explorer.minds.registry import READ_THE_TRUTH
 from reasoned_explorer.model import Fault, InputError, SettingsError, UnknownNameError
 from reasoned_explorer.planning.registry import PLANNERS
 from reasoned_explorer.planning.setting_pairs import parse_planner_settings
@@ -107,7 +108,8 @@ def method(name: str) -> Method:
         return Method(name, "llm-as-eval", evaluator=planner, is_bound=True)
     if planner not in PLANNERS.names():
         raise UnknownNameError("planner", planner, [*PLANNERS.names(), *BOUND_METHODS, *GROUPS])
-    return Method(name, planner, settings, visionary or None, evaluator or None, halts, is_bound=halts is not None)
+    is_bound = not READ_THE_TRUTH.isdisjoint({visionary, evaluator, halts})
+    return Method(name, planner, settings, visionary or None, evaluator or None, halts, is_bound=is_bound)
 
 
 def methods(names: Sequence[str]) -> tuple[Method, ...]:
@@ -116,16 +118,28 @@ def methods(names: Sequence[str]) -> tuple[Method, ...]:
     Raises:
         InputError: If names cannot be read, with all of these, or there is none.
     """
+    found, faults = _read(names)
+    if faults:
+        raise InputError("planners", faults)
+    return found
+
+
+def sound_methods(names: Sequence[str]) -> tuple[Method, ...]:
+    """Return those of the methods that can be read: what else is wrong with them can be told beside what cannot."""
+    return _read(names)[0]
+
+
+def _read(names: Sequence[str]) -> tuple[tuple[Method, ...], list[Fault]]:
     listed = list(dict.fromkeys(single for name in names for single in GROUPS.get(name, (name,))))
     found: list[Method] = []
     faults: list[Fault] = []
     for name in listed:
         try:
             found.append(method(name))
-        except InputError as error:
+        except UnknownNameError as error:
             faults += error.faults
+        except InputError as error:
+            faults += [replace(fault, what=f"{name}: {fault.what}") for fault in error.faults]
     if not listed:
         faults.append(Fault("no planner", f"at least one of {', '.join((*GROUPS, *PLANNERS.names()))}"))
-    if faults:
-        raise InputError("planners", faults)
-    return tuple(found)
+    return tuple(found), faults

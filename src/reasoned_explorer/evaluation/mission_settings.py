@@ -10,7 +10,7 @@ from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.minds.context import MindContext
 from reasoned_explorer.minds.latency import latency_profile
 from reasoned_explorer.minds.ledger import Ledger
-from reasoned_explorer.minds.registry import MINDS, make_minds
+from reasoned_explorer.minds.registry import MINDS, check_roles, make_minds
 from reasoned_explorer.model import Fault, Gathering, InputError, SettingsError, UnknownNameError
 from reasoned_explorer.perception.registry import CAPTIONERS
 from reasoned_explorer.planning import Planner
@@ -85,9 +85,20 @@ def errors_of(settings: MissionSettings) -> tuple[InputError, ...]:
     for name, check in _name_checks(settings):
         if name not in wrong:
             found.check(check)
+    if not wrong & {"minds", "visionary", "evaluator", "checker"}:
+        found.check(partial(check_roles, **minds_of(settings)))
     if not wrong & {"planner", "planner_settings", "explorer"}:
         found.check(lambda: with_overrides(settings.explorer, _planner_on_trial(settings)))
     return tuple(found.errors)
+
+
+def minds_of(settings: MissionSettings) -> dict[str, str]:
+    """Return who fills each role."""
+    return {
+        "visionary": settings.visionary or settings.minds,
+        "evaluator": settings.evaluator or settings.minds,
+        "checker": settings.checker or settings.minds,
+    }
 
 
 def _typed(settings: MissionSettings) -> list[tuple[str, Any, str, Callable[[Any], bool]]]:

@@ -1,8 +1,10 @@
 """Minds by name, and how roles of different names are put together."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from reasoned_explorer.minds.context import MindContext, Minds
+from reasoned_explorer.model import Fault, SettingsError
 from reasoned_explorer.registry import Entry, Registry
 
 #: Every mind that there is. A factory is called with a `MindContext` and returns `Minds`.
@@ -44,6 +46,34 @@ MINDS = Registry(
         ),
     ),
 )
+
+#: Minds that fill some roles only; asked in another they answer with a fault. All others fill all.
+ROLES_OF: Mapping[str, tuple[str, ...]] = {
+    "foresight-30m": ("evaluator",),
+    "foresight-60m": ("evaluator",),
+    "perfect-halt": ("checker",),
+}
+#: Minds that read the truth: what they take part in is a bound, no method.
+READ_THE_TRUTH = frozenset({"oracle", *ROLES_OF})
+
+
+def check_roles(*, visionary: str, evaluator: str, checker: str) -> None:
+    """Check that each role has a mind that fills it; whether there are such minds is for whoever makes them.
+
+    Raises:
+        SettingsError: With every role that would not be filled.
+    """
+    faults = [
+        Fault(
+            f"{name} as {role}",
+            "a mind that fills that role",
+            f"{name} is {' and '.join(ROLES_OF[name])} only: name the {role}, e.g. embedded",
+        )
+        for role, name in (("visionary", visionary), ("evaluator", evaluator), ("checker", checker))
+        if role not in ROLES_OF.get(name, (role,))
+    ]
+    if faults:
+        raise SettingsError("minds", faults)
 
 
 def make_minds(

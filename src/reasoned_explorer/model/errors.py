@@ -102,13 +102,15 @@ class UnknownNameError(InputError):
         kind: What was looked for, e.g. ``"planner"``.
         name: The name as it was given.
         known: The names that there are.
+        beside: What may be given instead of a name, or where else the name may be used; may be empty.
     """
 
-    def __init__(self, kind: str, name: str, known: Sequence[str]) -> None:
+    def __init__(self, kind: str, name: str, known: Sequence[str], *, beside: str = "") -> None:
         self.kind, self.name, self.known = kind, name, tuple(sorted(known))
         near = difflib.get_close_matches(name, self.known, n=3, cutoff=0.5)
         hint = f"did you mean {' or '.join(near)}?" if near else ""
-        super().__init__(f"unknown {kind}", [Fault(f"{name!r}", f"one of {', '.join(self.known)}", hint)])
+        expected = f"one of {', '.join(self.known)}" + (f", or {beside}" if beside else "")
+        super().__init__(f"unknown {kind}", [Fault(f"{name!r}", expected, hint)])
 
 
 class MissingDependencyError(ReasonedExplorerError):

@@ -1,4 +1,4 @@
-"""Stopping when a person asks for it (Ctrl-C), at places where stopping is safe.
+"""Stopping when a person (Ctrl-C) or a machine that ends programs (SIGTERM) asks for it, where stopping is safe.
 
 Python raises `KeyboardInterrupt` between any two instructions, also between those that compiled code calls back for;
 there it comes out as another error, or is lost. While a program listens (`listening`), the first request is therefore
@@ -8,8 +8,9 @@ second request stops at once, wherever the work is. Where nobody listens, nothin
 
 import signal
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from typing import Any
 
 
 class _Requests:
@@ -20,22 +21,27 @@ class _Requests:
 
 
 _requests = _Requests()
+#: What asks to stop, and what it does in a program that does not listen.
+_SIGNALS: Mapping[signal.Signals, Any] = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL}
 
 
 def listen() -> None:
     """Listen until the process ends.
 
-    Nothing happens in threads other than the main one, and where Ctrl-C means something else already.
+    Nothing happens in threads other than the main one, and where a signal means something else already.
     """
-    here = threading.current_thread() is threading.main_thread()
-    if here and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-        signal.signal(signal.SIGINT, _note)
+    if threading.current_thread() is not threading.main_thread():
+        return
+    for number, default in _SIGNALS.items():
+        if signal.getsignal(number) is default:
+            signal.signal(number, _note)
 
 
 def end_listening() -> None:
     """Have requests ignored from here on: all is done, and the process is about to end by itself."""
-    if signal.getsignal(signal.SIGINT) is _note:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for number in _SIGNALS:
+        if signal.getsignal(number) is _note:
+            signal.signal(number, signal.SIG_IGN)
 
 
 @contextmanager
@@ -49,8 +55,9 @@ def listening() -> Iterator[None]:
     try:
         yield
     finally:
-        if signal.getsignal(signal.SIGINT) is _note:
-            signal.signal(signal.SIGINT, signal.default_int_handler)
+        for number, default in _SIGNALS.items():
+            if signal.getsignal(number) is _note:
+                signal.signal(number, default)
 
 
 def stop_if_asked() -> None:

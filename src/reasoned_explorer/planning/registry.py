@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from reasoned_explorer.minds.context import Minds
-from reasoned_explorer.model import Fault, SettingsError
+from reasoned_explorer.model import Fault, InputError, SettingsError
 from reasoned_explorer.planning.controls import LlmAsEvalMatched, echoing, shuffling
 from reasoned_explorer.planning.fresh_ground import FreshGround, FreshGroundSettings
 from reasoned_explorer.planning.llm_mcts import LlmMcts, LlmMctsSettings
@@ -62,9 +62,12 @@ def make_planner(name: str, minds: Minds, settings: Mapping[str, Any] | None = N
     unknown = _unknown_settings(factory, given)
     if unknown:
         known = ", ".join(_settings_of(factory)) or "none"
-        raise SettingsError(
-            f"settings of the planner {name}", [Fault(f"no setting {key!r}", f"one of: {known}") for key in unknown]
-        )
+        faults = [Fault(f"no setting {key!r}", f"one of: {known}") for key in unknown]
+        try:
+            factory(minds, **{key: value for key, value in given.items() if key not in unknown})
+        except InputError as error:
+            faults += error.faults
+        raise SettingsError(f"settings of the planner {name}", faults)
     planner: Planner = factory(minds, **given)
     return planner
 

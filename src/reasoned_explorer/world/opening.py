@@ -28,6 +28,10 @@ _SEED, _SIZE = re.compile(r"\d{1,18}"), re.compile(r"\d+(?:\.\d+)?")
 _Made = tuple[World, tuple[str, ...]]
 _Maker = Callable[[], _Made]
 _PERMUTED = re.compile(r"(?P<spec>.+)~permuted:(?P<seed>\d{1,18})")
+_FORMS = (
+    f"a district like park:7@400, or a file that ends in .osm, .osm.gz, .osm.bz2, .osm.pbf or {KEPT_SUFFIX}; "
+    "~permuted:SEED may stand behind either"
+)
 
 
 def open_world(
@@ -92,8 +96,11 @@ def _maker_of(spec: str, *, seed: int, size_m: float, bbox: tuple[float, float, 
     if permuted is not None:
         make = _maker_of(permuted["spec"], seed=seed, size_m=size_m, bbox=bbox)
         return lambda: _permuted(*make(), int(permuted["seed"]))
-    lowered = spec.lower()
-    if lowered.endswith(KEPT_SUFFIX) or lowered.endswith(_OSM_SUFFIXES) or "/" in spec:
+    is_file = spec.lower().endswith((KEPT_SUFFIX, *_OSM_SUFFIXES))
+    if "~" in Path(spec).name and not is_file:
+        what = f"{spec!r} has {spec[spec.rindex('~') :]!r} behind its name"
+        raise WorldError("world", [Fault(what, "~permuted:SEED, as in park:7~permuted:1")])
+    if is_file or "/" in spec:
         return _reader_of(Path(spec), seed=seed, bbox=bbox)
     match = _NAME.fullmatch(spec)
     if match is None:
@@ -112,16 +119,13 @@ def _name_faults(spec: str) -> list[Fault]:
     """Return what is wrong with what is neither a name nor a file."""
     loose = _LOOSE_NAME.fullmatch(spec)
     if loose is None:
-        expected = (
-            f"a district like park:7@400, or a file that ends in .osm, .osm.gz, .osm.bz2, .osm.pbf or {KEPT_SUFFIX}"
-        )
-        return [Fault(f"{spec!r} is neither a name nor a file", expected)]
+        return [Fault(f"{spec!r} is neither a name nor a file", _FORMS)]
     from reasoned_explorer.world.generator import DISTRICTS
 
     known = (*DISTRICTS, *WORLDS.names())
     faults: list[Fault] = []
     if loose["name"] not in known:
-        faults += UnknownNameError("world", loose["name"], known).faults
+        faults += _unknown(loose["name"], known).faults
     if not _SEED.fullmatch(loose["seed"] or "0"):
         faults.append(Fault(f"{spec!r} has the seed {loose['seed']!r}", "a whole number from 0 on, as in park:7"))
     if not _SIZE.fullmatch(loose["size"] or "1"):
@@ -129,6 +133,10 @@ def _name_faults(spec: str) -> list[Fault]:
     return faults or [
         Fault(f"{spec!r} lacks a seed or a size behind its mark", "a name like park, park:7 or park:7@400")
     ]
+
+
+def _unknown(name: str, known: tuple[str, ...]) -> UnknownNameError:
+    return UnknownNameError("world", name, known, beside=f"a file (.osm, .osm.gz, .osm.bz2, .osm.pbf, {KEPT_SUFFIX})")
 
 
 def _nothing() -> _Made:
@@ -174,7 +182,7 @@ def _generator_of(name: str, seed: int, size_m: float) -> _Maker:
         check_request(name, seed=seed, size_m=size_m)
         return lambda: (generate_world(name, seed=seed, size_m=size_m), ())
     if name not in WORLDS.names():
-        raise UnknownNameError("world", name, [*DISTRICTS, *WORLDS.names()])
+        raise _unknown(name, (*DISTRICTS, *WORLDS.names()))
     return lambda: (_registered(name, seed, size_m), ())
 
 

@@ -1,4 +1,5 @@
 import sqlite3
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -127,3 +128,27 @@ def test_more_planners_can_be_run_on_the_missions_of_a_run(store: RunStore) -> N
     with pytest.raises(InputError, match="did you mean random"):
         store.extend(["randon"])
     assert store.plan.methods[-1] == "random"
+
+
+def test_a_run_is_read_beside_who_writes_it_and_leaves_nothing(store: RunStore, small_plan: BenchPlan) -> None:
+    tasks = list(small_plan.tasks())
+    for task in tasks[:2]:
+        store.add(task, run_task(small_plan, task).row, trace=None, wall_s=0.0)
+    with RunStore.read(store.folder) as again:
+        assert again.finished() == {task.key for task in tasks[:2]}, "what is in the log is read, too"
+    store.close()
+    assert [path.name for path in store.folder.iterdir()] == [STORE_NAME]
+    before = (store.folder / STORE_NAME).read_bytes()
+    with RunStore.read(store.folder) as again:
+        assert len(list(again.rows())) == 2
+        assert [path.name for path in store.folder.iterdir()] == [STORE_NAME]
+    assert (store.folder / STORE_NAME).read_bytes() == before
+
+
+def test_a_run_left_in_wal_mode_is_read_without_a_trace(store: RunStore) -> None:
+    store.close()
+    with closing(sqlite3.connect(store.folder / STORE_NAME)) as connection:
+        connection.execute("PRAGMA journal_mode = WAL")
+    with RunStore.read(store.folder) as again:
+        assert again.finished() == set()
+    assert [path.name for path in store.folder.iterdir()] == [STORE_NAME]

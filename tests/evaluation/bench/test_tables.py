@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from reasoned_explorer.evaluation.bench.ablations import depth_methods, depth_sheet, minds_methods, minds_sheet
-from reasoned_explorer.evaluation.bench.notes import notes_of
+from reasoned_explorer.evaluation.bench.notes import bounds_among, notes_of
 from reasoned_explorer.evaluation.bench.results import Results, corrected, label_of
 from reasoned_explorer.evaluation.bench.tables import (
     compared_sheet,
@@ -117,6 +117,40 @@ def test_notes_say_what_is_missing_and_whose_minds_they_were() -> None:
     assert any("read the truth" in line for line in notes.once)
     assert notes.thanks == ("© OpenStreetMap contributors, ODbL 1.0",)
     assert notes_of([replace(made_row(), minds="a language model")], total=1).always == ()
+
+
+def test_notes_tell_what_was_really_done() -> None:
+    rows = [made_row("llm-rrt", number) for number in range(4)]
+    here = [replace(row, place="park") for row in rows]
+    assert any("of one place" in line for line in notes_of(here, total=4).once)
+    apart = [replace(row, place=f"park {number}") for number, row in enumerate(rows)]
+    assert any("resampled by place (4 places" in line for line in notes_of(apart, total=4).once)
+    for captioner, said in (
+        ("simulated captioner (perfect)", "a simulated captioner’s, without error"),
+        ("simulated captioner (noisier)", "the error rates of “noisier” are assumed"),
+    ):
+        seen = [replace(row, captioner=captioner) for row in rows]
+        assert any(said in line for line in notes_of(seen, total=4).once)
+    for places in (here, apart):
+        results = Results.of([*places, *(replace(row, method="random") for row in places)], ())
+        drawn = "mission (of one place)" if places is here else "place"
+        note = difference_sheet(results, "random").notes[0]
+        assert f"resampled by {drawn}. p: sign-flip test on SR by {drawn}" in note
+
+
+def test_minds_that_read_the_truth_make_a_bound_of_a_method() -> None:
+    told = replace(made_row("llm-rrt"), minds="oracle (knows the world; an upper bound)")
+    halted = replace(
+        made_row("random"),
+        planner="random [no model]",
+        minds="visionary: embedded, evaluator: embedded, checker: perfect halt (knows the world; a bound)",
+    )
+    honest = replace(halted, method="follow-paths", minds="visionary: v, evaluator: e, checker: x")
+    unasked = replace(halted, method="nearest-frontier", minds="visionary: v, evaluator: o (a bound), checker: x")
+    rows = [told, halted, honest, unasked]
+    assert bounds_among(rows) == ("llm-rrt", "random")
+    assert any("read the truth" in line for line in notes_of(rows, total=4).once)
+    assert label_of([halted]).startswith("random [no model; a mind knows the world, a bound]")
 
 
 def test_vehicles_stand_side_by_side() -> None:

@@ -23,10 +23,9 @@ def export(store: RunStore, path: Path) -> int:
         PartError: If the disk fails, e.g. because it is full.
     """
     if path.suffix not in FORMATS:
-        raise InputError("export", [Fault(f"{path.name}", f"a name that ends in {' or '.join(FORMATS)}")])
+        raise InputError("export", [Fault(f"{path}", f"a name that ends in {' or '.join(FORMATS)}")])
     half = path.with_name(f"{path.name}.{os.getpid()}.half")
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         count = _csv(store, half) if path.suffix == ".csv" else _parquet(store, half)
         half.replace(path)
     except OSError as error:

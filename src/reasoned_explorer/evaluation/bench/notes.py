@@ -3,12 +3,12 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from reasoned_explorer.evaluation.methods import method
+from reasoned_explorer.evaluation.bench.results import reads_the_truth
 from reasoned_explorer.evaluation.row import MissionRow
-from reasoned_explorer.model import InputError
 from reasoned_explorer.model.record import MissionEnd
 
 _EMBEDDED = "embedded minds"
+_SIMULATED, _WITHOUT_ERROR = "simulated captioner", "perfect"
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,21 +52,33 @@ def notes_of(rows: Iterable[MissionRow], *, total: int) -> Notes:
         once.append(
             f"{failed:,} {'mission' if failed == 1 else 'missions'} ended with a fault of a part: failures, too."
         )
-    if any("simulated" in row.captioner for row in rows):
-        once.append("Captions are a simulated captioner’s; the error rates of “noisy” are assumed.")
+    captioners = sorted({row.captioner for row in rows if _SIMULATED in row.captioner})
+    if captioners:
+        # A mission that could not be run knows its captioner by name alone.
+        names = [name.removeprefix(_SIMULATED).strip(" ()") for name in captioners]
+        wrong = [f"“{name}”" for name in names if name != _WITHOUT_ERROR]
+        rates = f"the error rates of {' and '.join(wrong)} are assumed" if wrong else "without error"
+        once.append(f"Captions are a simulated captioner’s{';' if wrong else ','} {rates}.")
     if any(row.ct_label.startswith("modelled") for row in rows):
         once.append("CT is modelled: each call is charged what a latency profile says, not what it took.")
-    if any(is_bound(name) for name in {row.method for row in rows}):
+    if bounds_among(rows):
         once.append("oracle, foresight and perfect-halt read the truth: bounds, no methods.")
-    once.append(
-        "Intervals are 95 %, resampled by place where there are several; a share that never varies has Wilson’s."
-    )
+    once.append(_about_intervals(len({row.place for row in rows})))
     return Notes(tuple(always), tuple(once), tuple(sorted({row.attribution for row in rows} - {""})))
 
 
-def is_bound(name: str) -> bool:
-    """Return whether a method reads the truth; one that is not installed any more is taken for an honest one."""
-    try:
-        return method(name).is_bound
-    except InputError:
-        return False
+def _about_intervals(places: int) -> str:
+    if places < 2:
+        return (
+            "Intervals are 95 %, of one place: missions are resampled, shares have Wilson’s. They say nothing of other "
+            "places."
+        )
+    return (
+        f"Intervals are 95 %, resampled by place ({places} places; by mission, and Wilson’s for shares, where a line "
+        "has one place only); a share that never varies has Wilson’s."
+    )
+
+
+def bounds_among(rows: Iterable[MissionRow]) -> tuple[str, ...]:
+    """Return the methods of rows that read the truth, by their own names or by the minds that they were given."""
+    return tuple(sorted({row.method for row in rows if reads_the_truth(row)}))

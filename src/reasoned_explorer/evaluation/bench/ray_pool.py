@@ -1,6 +1,9 @@
 """Missions of a run on a Ray cluster: the same missions, the same rows, whichever machine runs which."""
 
+import re
+import socket
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from importlib.util import find_spec
 from typing import Any
 
@@ -14,6 +17,9 @@ from reasoned_explorer.model.stopping import stop_if_asked
 _AHEAD = 2
 #: So often it is looked whether a person asks to stop, seconds.
 _LOOK_EVERY_S = 0.5
+#: So long a cluster may take to answer, seconds.
+_ANSWER_S = 5.0
+_ADDRESS = re.compile(r"(?:ray://)?(?P<host>[\w.-]+|\[[0-9A-Fa-f:.]+\]):(?P<port>\d{1,5})", re.ASCII)
 
 
 def run_on_ray(plan: BenchPlan, tasks: Sequence[Task], *, address: str, workers: int | None = None) -> Iterator[Done]:
@@ -33,8 +39,7 @@ def run_on_ray(plan: BenchPlan, tasks: Sequence[Task], *, address: str, workers:
         SettingsError: If the cluster cannot be reached.
     """
     ray = _ray()
-    started = _join(ray, address, workers)
-    try:
+    with joined(address, workers):
         # Read once by every node, not sent along with every mission.
         shared = ray.put(plan)
         remote = ray.remote(num_cpus=1, max_retries=MAX_TRIES - 1)(run_task)
@@ -61,9 +66,42 @@ def run_on_ray(plan: BenchPlan, tasks: Sequence[Task], *, address: str, workers:
                     raise error.cause from None
                 except ray.exceptions.RayError as error:
                     yield lost(plan, task, f"its worker was lost {MAX_TRIES} times: {type(error).__name__}")
+
+
+@contextmanager
+def joined(address: str, workers: int | None = None) -> Iterator[None]:
+    """Be part of a cluster for as long as a ``with`` block lasts; see `run_on_ray`.
+
+    Raises:
+        MissingDependencyError: If Ray is not installed.
+        SettingsError: If the cluster cannot be reached.
+    """
+    ray = _ray()
+    started = _join(ray, address, workers)
+    try:
+        yield
     finally:
         if started:
             ray.shutdown()
+
+
+def check_address(address: str) -> None:
+    """Check that an address is one, and that somebody answers there; Ray itself takes long to find that out.
+
+    Raises:
+        SettingsError: If it is none, or nobody answers.
+    """
+    expected = "auto, or the address of a running Ray cluster, e.g. 10.0.0.5:6379 or ray://10.0.0.5:10001"
+    if address == "auto":
+        return
+    found = _ADDRESS.fullmatch(address)
+    if found is None or not 0 < int(found["port"]) < 1 << 16:
+        raise SettingsError("--ray", [Fault(f"{address!r}", expected)])
+    try:
+        socket.create_connection((found["host"].strip("[]"), int(found["port"])), timeout=_ANSWER_S).close()
+    except OSError as error:
+        what = f"the cluster at {address!r} cannot be reached: {error}"
+        raise SettingsError("--ray", [Fault(what, expected)]) from error
 
 
 def require_ray() -> None:

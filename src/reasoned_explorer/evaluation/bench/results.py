@@ -1,17 +1,21 @@
 """The rows of a run by method, and the figures of them that every table shows, on the screen and on a page."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 
-from reasoned_explorer.evaluation.methods import BOUND_METHODS, PERFECT_HALT
+from reasoned_explorer.evaluation.methods import BOUND_METHODS, PERFECT_HALT, method
 from reasoned_explorer.evaluation.metrics import Metric, MetricTable, aggregate, compare, headroom_closed
 from reasoned_explorer.evaluation.row import MissionRow
 from reasoned_explorer.evaluation.statistics import holm
+from reasoned_explorer.model import InputError
 
 #: Figures of which paired differences are shown.
 DIFFERENCES = ("SR", "OSR", "SPL", "CASR", "CASR per mission")
 #: Figures of which the share of headroom that is closed is shown: from the baseline to the bound.
 HEADROOM = ("SR", "SPL", "CASR", "CASR per mission")
+#: What the labels of minds that read the truth end with, and of planners that ask no mind but the checker.
+_A_BOUND, _NO_MODEL = "bound)", "[no model]"
 BASELINE, BOUND = "follow-paths", "foresight-60m"
 
 
@@ -132,6 +136,19 @@ def p_of(table: MetricTable, name: str) -> float:
     return 1.0 if p is None else p
 
 
+def reads_the_truth(row: MissionRow) -> bool:
+    """Return whether a mission was one of a bound: its method is one, or a mind that it asks knows the world.
+
+    A method that is not installed any more is taken for an honest one.
+    """
+    with suppress(InputError):
+        if method(row.method).is_bound:
+            return True
+    # Of minds, who asks no model has the checker only.
+    asked = row.minds.rpartition("checker: ")[2] if _NO_MODEL in row.planner else row.minds
+    return _A_BOUND in asked
+
+
 def label_of(rows: Sequence[MissionRow]) -> str:
     """Return what a method is called in a table: its name, whose minds, and how its thinking time came about."""
     what = what_of(rows)
@@ -148,4 +165,6 @@ def what_of(rows: Sequence[MissionRow]) -> tuple[str, str]:
         notes.append("a bound: knows the world")
     elif row.method.endswith(f"+{PERFECT_HALT}"):
         notes.append("the judge halts, a bound")
+    elif reads_the_truth(row) and _A_BOUND not in minds:
+        notes.append("a mind knows the world, a bound")
     return "; ".join(notes), f", CT {row.ct_label}" if row.ct_label else ""

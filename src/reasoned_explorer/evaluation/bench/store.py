@@ -6,6 +6,9 @@ whole, whenever the process is killed. Rows are read in one order, whatever the 
 ``run.sqlite`` has the table ``run`` (what the run is: its plan, its versions, as JSON) and the table ``missions``: a
 mission's key, its row as JSON, and the seconds that it took on this machine, which no table of results reads. The view
 ``results`` has the row's figures as columns, for whoever asks with SQL.
+
+While it is written it is in SQLite's WAL mode; whoever closes it makes a plain file of it again, so that a run can be
+read where nothing can be written.
 """
 
 import json
@@ -24,6 +27,7 @@ from reasoned_explorer.evaluation.record_file import parse_record
 from reasoned_explorer.evaluation.row import MissionRow
 from reasoned_explorer.evaluation.scoring import MissionScore
 from reasoned_explorer.model import Fault, InputError, PartError, RecordError, RecordWriteError
+from reasoned_explorer.model.checks import is_there
 from reasoned_explorer.model.disk import disk_error, in_words
 from reasoned_explorer.model.record import EpisodeRecord, MissionEnd
 
@@ -56,11 +60,12 @@ CREATE VIEW results AS SELECT vehicle, method, mission_id, """  # noqa: S608
 
 
 class RunStore:
-    """A run's store; a context manager. Make one with `create` or `open`."""
+    """A run's store; a context manager. Make one with `create`, `open` (to go on with it) or `read`."""
 
-    def __init__(self, folder: Path, connection: sqlite3.Connection) -> None:
+    def __init__(self, folder: Path, connection: sqlite3.Connection, *, writes: bool) -> None:
         self.folder = folder
         self._connection = connection
+        self._writes = writes
 
     @classmethod
     def create(cls, folder: Path, plan: BenchPlan, about: dict[str, Any]) -> "RunStore":
@@ -76,12 +81,13 @@ class RunStore:
             PartError: If the disk fails, e.g. because it is full.
         """
         path = folder / STORE_NAME
-        if path.exists():
+        if is_there(path):
             fault = Fault(
                 f"{path} is there already", "a folder without a run", "go on with it (--resume) or name another"
             )
             raise RecordError("run", [fault])
         half = path.with_suffix(".half")
+        made = [each for each in (folder, *folder.parents) if not is_there(each)]
         try:
             folder.mkdir(parents=True, exist_ok=True)
             half.unlink(missing_ok=True)
@@ -94,39 +100,76 @@ class RunStore:
                     [(name, json.dumps(value, sort_keys=True, ensure_ascii=False)) for name, value in facts.items()],
                 )
             half.replace(path)
-        except (OSError, sqlite3.Error) as error:
-            with suppress(OSError):
-                half.unlink(missing_ok=True)
+            return cls.open(folder)
+        except (OSError, sqlite3.Error, PartError) as error:
+            for each in (half, half.with_name(f"{half.name}-journal"), path):
+                with suppress(OSError):
+                    each.unlink(missing_ok=True)
+            for each in made:
+                with suppress(OSError):
+                    each.rmdir()
+            if isinstance(error, PartError):
+                raise
             raise _write_error(path, error) from error
-        return cls.open(folder)
 
     @classmethod
     def open(cls, folder: Path) -> "RunStore":
-        """Open the store of a run.
+        """Open the store of a run to go on with it.
 
         Raises:
             RecordError: If there is none, or it is none of ours, or of another version.
+            PartError: If the disk fails, e.g. because it is full.
         """
-        path = folder / STORE_NAME
-        if not path.is_file():
-            fault = Fault(f"{folder} holds no {STORE_NAME}", "the folder of a run of rex bench")
-            raise RecordError("run", [fault])
+        path = _store_path(folder)
         try:
             connection = sqlite3.connect(path, isolation_level=None, timeout=60.0)
+        except sqlite3.Error as error:
+            raise _read_error(path, error) from error
+        try:
             connection.execute("PRAGMA journal_mode = WAL")
             # A killed process loses nothing; only a machine that loses its power may lose the last missions.
             connection.execute("PRAGMA synchronous = NORMAL")
-            store = cls(folder, connection)
-            version = store._fact("store_version")
+        except sqlite3.Error as error:
+            connection.close()
+            raise _read_error(path, error) from error
+        return cls(folder, connection, writes=True)._checked()
+
+    @classmethod
+    def read(cls, folder: Path) -> "RunStore":
+        """Open the store of a run, finished or not, to read it: nothing is written, neither in the file nor beside it.
+
+        Only a run that was killed, or that still goes on, may need room for the list of what its write-ahead log holds.
+
+        Raises:
+            RecordError: If there is none, or it is none of ours, or of another version.
+            PartError: If the disk fails, e.g. because it is full.
+        """
+        path = _store_path(folder)
+        # Without a log nobody writes: SQLite need not look for one, nor make one where it may not.
+        still = "" if path.with_name(f"{path.name}-wal").is_file() or not _was_in_wal_mode(path) else "&immutable=1"
+        try:
+            connection = sqlite3.connect(
+                f"{path.absolute().as_uri()}?mode=ro{still}", uri=True, isolation_level=None, timeout=60.0
+            )
+        except sqlite3.Error as error:
+            raise _read_error(path, error) from error
+        return cls(folder, connection, writes=False)._checked()
+
+    def _checked(self) -> "RunStore":
+        """Return the store, or close it where it is none of ours."""
+        path = self.folder / STORE_NAME
+        try:
+            version = self._fact("store_version")
         except (sqlite3.Error, KeyError, ValueError) as error:
-            fault = Fault(f"{path} cannot be read: {error}", "a run's store")
-            raise RecordError("run", [fault]) from error
+            self.close()
+            raise _read_error(path, error) from error
         if version != _STORE_VERSION:
+            self.close()
             fault = Fault(
                 f"{path} is of version {version}", f"version {_STORE_VERSION}", "run it again with this version"
             )
             raise RecordError("run", [fault])
-        return store
+        return self
 
     @property
     def plan(self) -> BenchPlan:
@@ -223,7 +266,12 @@ class RunStore:
         return [*_KEY, *_COLUMNS, *_SCORES], self._connection.execute(query)
 
     def close(self) -> None:
-        """Close the file; safe to call twice."""
+        """Close the file, a plain one again if nobody else has it open; safe to call twice."""
+        if self._writes:
+            # Somebody reads it, or the disk is full: it stays as it is, and is whole.
+            with suppress(sqlite3.Error):
+                self._connection.execute("PRAGMA busy_timeout = 0")
+                self._connection.execute("PRAGMA journal_mode = DELETE")
         self._connection.close()
 
     def __enter__(self) -> Self:
@@ -241,12 +289,50 @@ class RunStore:
         return json.loads(found[0])
 
 
+def _store_path(folder: Path) -> Path:
+    """Return where a run's store is.
+
+    Raises:
+        RecordError: If there is none.
+    """
+    path = folder / STORE_NAME
+    if not is_there(path) or not path.is_file():
+        fault = Fault(f"{folder} holds no {STORE_NAME}", "the folder of a run of rex bench")
+        raise RecordError("run", [fault])
+    return path
+
+
+def _was_in_wal_mode(path: Path) -> bool:
+    """Return whether a file was left in WAL mode: two bytes of SQLite's header say so (file format, 1.3.3)."""
+    try:
+        with path.open("rb") as file:
+            return file.read(20)[18:] == b"\x02\x02"
+    except OSError:
+        return False  # why it cannot be read is SQLite's to say
+
+
+def _is_of_the_disk(error: Exception) -> bool:
+    # Extended codes have the plain one in their last byte; what is no answer of SQLite's has none.
+    code = getattr(error, "sqlite_errorcode", None)
+    return code is not None and code & 0xFF in {sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR}
+
+
+def _read_error(path: Path, error: Exception) -> InputError | PartError:
+    """Return the error to raise when a store cannot be opened."""
+    if _is_of_the_disk(error):
+        what = f"{path} cannot be opened: {error}"
+        return PartError("disk", f"{what}; make room on that disk, or allow larger files (ulimit -f)")
+    if getattr(error, "sqlite_errorcode", 0) & 0xFF in {sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY}:
+        fault = Fault(f"{path} cannot be opened: {error}", "a file and a folder that may be written to", "copy the run")
+        return RecordError("run", [fault])
+    return RecordError("run", [Fault(f"{path} cannot be read: {error}", "a run's store")])
+
+
 def _write_error(path: Path, error: OSError | sqlite3.Error) -> InputError | PartError:
     """Return the error to raise when a store cannot be made."""
     if isinstance(error, OSError):
         return disk_error("run", path, error, kind=RecordError)
-    # Extended codes have the plain one in their last byte.
-    if error.sqlite_errorcode & 0xFF in {sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR}:
+    if _is_of_the_disk(error):
         return PartError("disk", _in_words(path, error))
     return RecordError("run", [Fault(f"{path} cannot be written: {error}", "a folder that can be written to")])
 
@@ -254,7 +340,7 @@ def _write_error(path: Path, error: OSError | sqlite3.Error) -> InputError | Par
 def _in_words(path: Path, error: OSError | sqlite3.Error) -> str:
     if isinstance(error, OSError):
         return in_words(path, error)
-    return f"{path} cannot be written: {error}; make room on that disk, or write to another one"
+    return f"{path} cannot be written: {error}; make room on that disk, or allow larger files (ulimit -f)"
 
 
 def _plain(name: str) -> str:

@@ -1,7 +1,7 @@
 """The tables of a run as text."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from statistics import fmean
 
@@ -31,6 +31,8 @@ _MORE: tuple[tuple[str, Callable[[float], str]], ...] = (
     ("distance to goal", whole),
 )
 _AT_RADIUS = "SR at "
+#: What `MetricTable` calls an interval that was made by drawing places.
+_BY_PLACE = "clustered bootstrap"
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,14 +177,21 @@ def _differences(title: str, tables: dict[str, MetricTable], notes: Sequence[str
         cells = [figure(table[shown]) for shown in DIFFERENCES]
         lines.append((name, f"{table.count}", *cells, share(p_of(table, "SR"), 3), share(holm[name], 3)))
     head = ("planners", "missions", *DIFFERENCES, "p (SR)", "p, corrected")
-    return Sheet(title, head, tuple(lines), (DIFFERENCES_NOTE, *notes))
+    return Sheet(title, head, tuple(lines), (differences_note(tables.values()), *notes))
 
 
-#: What must be known to read paired differences.
-DIFFERENCES_NOTE = (
-    "Intervals are 95 %, paired by mission, resampled by place where there are several. p: sign-flip test on SR by "
-    "place, then Holm's correction for the number of lines; with K places that differ p is at least 2^(1 − K)."
-)
+def differences_note(tables: Iterable[MetricTable]) -> str:
+    """Return what must be known to read paired differences: how their intervals and p-values were made."""
+    # Where nothing differs between places, SR still says how it was resampled.
+    by_place = {table["SR"].interval == _BY_PLACE for table in tables}
+    drawn = " or ".join(
+        [*(["place"] if True in by_place else []), *(["mission (of one place)"] if False in by_place else [])]
+    )
+    note = (
+        f"Intervals are 95 %, paired by mission, resampled by {drawn}. p: sign-flip test on SR by {drawn}, then Holm's "
+        "correction for the number of lines"
+    )
+    return f"{note}; with K places that differ p is at least 2^(1 − K)." if True in by_place else f"{note}."
 
 
 def city_sheet(results: Results, *, notes: Sequence[str] = ()) -> Sheet:

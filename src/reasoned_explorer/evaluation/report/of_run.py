@@ -3,7 +3,7 @@
 from functools import lru_cache
 from pathlib import Path
 
-from reasoned_explorer.evaluation.bench.notes import is_bound, notes_of
+from reasoned_explorer.evaluation.bench.notes import bounds_among, notes_of
 from reasoned_explorer.evaluation.bench.store import NOTHING_FINISHED, RunStore
 from reasoned_explorer.evaluation.report.about import ReportAbout
 from reasoned_explorer.evaluation.report.writing import write_report
@@ -76,7 +76,7 @@ def about_run(store: RunStore, rows: list[MissionRow]) -> ReportAbout:
             for name, speed_mps in speeds_mps.items()
         ),
         methods=plan.methods,
-        bounds=tuple(name for name in names if is_bound(name)),
+        bounds=bounds_among(rows),
     )
 
 

@@ -46,7 +46,8 @@
     const named = (key, names, place, text) => {
       if (!filter.has(key)) return;
       const at = names.indexOf(filter.get(key));
-      where.push([text(filter.get(key)), (row) => row[place] === at]);
+      const unknown = at < 0 ? " (there is none of that name)" : "";
+      where.push([text(filter.get(key)) + unknown, (row) => row[place] === at]);
     };
     if (filter.has("versus")) {
       const [first, second] = [data.methods.indexOf(filter.get("method")), data.methods.indexOf(filter.get("versus"))];

@@ -12,7 +12,7 @@ from reasoned_explorer.evaluation.bench.results import (
     p_of,
     what_of,
 )
-from reasoned_explorer.evaluation.bench.tables import DIFFERENCES_NOTE
+from reasoned_explorer.evaluation.bench.tables import differences_note
 from reasoned_explorer.evaluation.metrics import Metric, mean_of
 from reasoned_explorer.evaluation.paper import PAPER_TABLES
 from reasoned_explorer.evaluation.report.links import link
@@ -153,8 +153,8 @@ def differences_table(study: Study) -> Table | None:
         caption="Paired differences to the first method, on the same missions",
         columns=("methods", "pairs", *DIFFERENCES, "p (SR)", "p, corrected"),
         groups=(Group("", tuple(lines)),),
-        note=f"{DIFFERENCES_NOTE} The numbers of SR and OSR lead to the missions in which the two differ. The file "
-        "has p of the other figures, too, each corrected among the lines of its own figure.",
+        note=f"{differences_note(tables.values())} The numbers of SR and OSR lead to the missions in which the two "
+        "differ. The file has p of the other figures, too, each corrected among the lines of its own figure.",
         head=("method", "minus", *METRIC_HEAD, "p", "p_corrected"),
         records=tuple(records),
     )
