@@ -29,8 +29,9 @@ minilm: $(READY) ## Get the weights of MiniLM (optional)
 
 setup: $(READY) ## Set up the virtual environment
 
+# The seed was picked so that a mission is shown that finds its goal; docs/results.md says how often that happens.
 demo: $(READY) ## Run the main job: one mission in a generated park
-	$(BIN)/rex run "Find me somewhere to take a nap" --world park:7 --vehicle drone --seed 5; \
+	$(BIN)/rex run "Find me somewhere to take a nap" --world park:16 --vehicle drone --seed 10; \
 	  code=$$?; test $$code -le 1
 
 test: $(READY) ## Run the whole test suite

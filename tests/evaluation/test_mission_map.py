@@ -224,6 +224,34 @@ def test_marks_at_the_edge_of_the_world_are_whole(corner: tuple[float, float]) -
     assert board.shows_point(*halt, margin_m=-HALT_PT * board.metres_per_point)
 
 
+def test_ways_on_outside_the_world_are_left_out_and_counted() -> None:
+    outside = tuple(MapFrontier(205.0 + k, 0.0, 0.0, 3.0, 0.5, "blocked") for k in range(3))
+    trace = mission(frontiers=(*mission().frontiers, *outside)).within(park().bounds)
+    assert trace.frontiers == mission().frontiers
+    assert trace.left_out == 3
+    assert trace.within(park().bounds).left_out == 3
+    assert "no world; 3 ways on left out" in texts_of(park(), trace)
+    assert not any("left out" in text for text in texts_of(park(), mission()))
+
+
+def test_numbers_leave_the_track_in_sight() -> None:
+    """Where decisions lie close together every fifth has its number, and the last always."""
+    points = tuple((4.0 * k, 9.0 * math.sin(k / 4)) for k in range(23))
+    trace = mission(track=np.array(points), path_points=points, start=Pose(*points[0]), end=Pose(*points[-1]),
+                    frontiers=(), goals=(), edges=(), shortest_way=None, facts=())  # fmt: skip
+    sheet, board = shown_on(park(), trace)
+    numbers = {text.get_text() for text in board.axes.findobj(Text) if text.get_text().isdigit()}
+    assert numbers == {"5", "10", "15", "20", "23"}
+    assert sheet is not None
+
+
+def test_a_world_smaller_than_the_map_stands_in_its_middle() -> None:
+    moved = moved_into(Bounds(-60.0, 0.0, 100.0, 160.0), Bounds(0.0, 0.0, 100.0, 100.0),
+                       kept=Bounds(40.0, 40.0, 60.0, 60.0), rim_m=10.0)  # fmt: skip
+    assert (moved.min_x_m, moved.max_x_m) == (-30.0, 130.0)
+    assert (moved.min_y_m, moved.max_y_m) == (-30.0, 130.0)
+
+
 @settings(deadline=None, max_examples=200)
 @given(
     st.tuples(st.floats(-100.0, 90.0), st.floats(1.0, 100.0)),

@@ -1,13 +1,15 @@
 """The picture of a mission: where it was looked for, what was thought of each way on, and where it ended."""
 
+import math
 from pathlib import Path
 
 import numpy as np
+import shapely
 from matplotlib.collections import LineCollection, PathCollection
 from numpy.typing import NDArray
 
 from reasoned_explorer.evaluation.mission_marks import paint_mission, places_of
-from reasoned_explorer.evaluation.mission_panel import MARGIN_PT, footnotes, write_headline, write_panel
+from reasoned_explorer.evaluation.mission_panel import MARGIN_PT, OUTSIDE, footnotes, write_headline, write_panel
 from reasoned_explorer.evaluation.mission_signs import RIM_PT
 from reasoned_explorer.evaluation.mission_trace import MapFrontier, MapGoal, MissionTrace
 from reasoned_explorer.model.errors import RecordError
@@ -28,6 +30,7 @@ from reasoned_explorer.world.sheet import (
     scale_bar_width_pt,
 )
 from reasoned_explorer.world.symbols import compound_path
+from reasoned_explorer.world.textures import lines_of, polygon_of
 from reasoned_explorer.world.world import Bounds, World
 
 __all__ = ["LEAST_EXTENT_M", "MapFrontier", "MapGoal", "MissionTrace", "draw_mission"]
@@ -146,7 +149,7 @@ def _bounds_of(points: NDArray[np.float64]) -> Bounds:
 def moved_into(shown: Bounds, world: Bounds, *, kept: Bounds, rim_m: float) -> Bounds:
     """Return the bounds moved so that they show as little as can be of what lies outside the world.
 
-    What happened stays clear of the frame, at the world's very edge too: there the map shows a strip of nothing.
+    What happened stays clear of the frame, at the world's very edge too: there the map shows a strip of hatching.
 
     Args:
         shown: What a map shows; it holds what happened.
@@ -166,7 +169,9 @@ def moved_into(shown: Bounds, world: Bounds, *, kept: Bounds, rim_m: float) -> B
 def _shift(shown: tuple[float, float], world: tuple[float, float], kept: tuple[float, float], rim_m: float) -> float:
     (low, high), (least, most) = shown, world
     if high - low > most - least:
-        return 0.0
+        # Too little world to fill the map: it stands in the middle, as far as what happened lets it.
+        shift = 0.5 * (least + most - low - high)
+        return min(max(shift, min(kept[1] + rim_m - high, 0.0)), max(kept[0] - rim_m - low, 0.0))
     shift = max(least - low, 0.0) + min(most - high, 0.0)
     # It goes no farther than until what happened comes near to the frame.
     if shift > 0.0:
@@ -175,22 +180,31 @@ def _shift(shown: tuple[float, float], world: tuple[float, float], kept: tuple[f
 
 
 def _paint_outside(board: Board, world: Bounds) -> None:
-    """Leave the sheet bare beyond the edge of the world, where shadows and the ends of streets would reach."""
+    """Lay fine slanting lines over what lies beyond the edge of the world, where shadows and streets would reach."""
     shown = board.bounds
-    hole = _corners(world)
     if min(world.width_m, world.height_m) <= 0.0 or all(world.contains(x, y) for x, y in _corners(shown)):
         return
+    hole = _corners(world)
     board.axes.add_collection(
         PathCollection(
             [compound_path([_corners(shown), hole[::-1]])],
             facecolors=board.palette.paper,
             edgecolors="none",
-            zorder=5.46,
+            zorder=6.4,
         ),
         autolim=False,
     )
-    edge = LineCollection([np.vstack([hole, hole[:1]])], colors=board.palette.soft_ink, linewidths=0.6, zorder=5.47)
-    board.axes.add_collection(edge, autolim=False)
+    outside = polygon_of(_corners(shown)).difference(polygon_of(hole))
+    # Lines x - y = c from edge to edge of the map, cut to what is outside.
+    step_m = 5.0 * board.metres_per_point
+    low, high = shown.min_x_m - shown.max_y_m, shown.max_x_m - shown.min_y_m
+    offsets = np.arange(math.floor(low / step_m), math.ceil(high / step_m) + 1) * step_m
+    ends = np.array([shown.min_y_m, shown.max_y_m])
+    slants = shapely.linestrings(offsets[:, None] + ends, np.broadcast_to(ends, (len(offsets), 2)))
+    hatch = lines_of(shapely.union_all(shapely.intersection(slants, outside)))
+    rim = np.vstack([hole, hole[:1]])
+    for lines, colour, width in ((hatch, OUTSIDE, 0.6), ([rim], board.palette.soft_ink, 0.7)):
+        board.axes.add_collection(LineCollection(lines, colors=colour, linewidths=width, zorder=6.41), autolim=False)
 
 
 def _corners(bounds: Bounds) -> NDArray[np.float64]:
@@ -219,6 +233,7 @@ def _write_scale(
     columns, rows = np.meshgrid(np.arange(left, left + wide, 4.0), np.arange(bottom, bottom + high, 4.0))
     room.block(np.column_stack([columns.ravel(), rows.ravel()]) * board.metres_per_point + corner_m, 3.0)
     left, bottom = left + map_corner_pt[0], bottom + map_corner_pt[1]
-    card(sheet, left, bottom, wide, high)
+    # Opaque: what shimmers through looks like a sign.
+    card(sheet, left, bottom, wide, high, alpha=1.0)
     draw_north_arrow(sheet, left + 18.0, bottom + 18.0, size_pt=22.0)
     draw_scale_bar(sheet, left + 42.0, bottom + 11.0, board.metres_per_point, room_pt=112.0)

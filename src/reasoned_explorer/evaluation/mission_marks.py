@@ -13,7 +13,14 @@ from matplotlib.path import Path as MarkPath
 from matplotlib.transforms import IdentityTransform
 from numpy.typing import NDArray
 
-from reasoned_explorer.evaluation.mission_signs import HALT_PT, STEP_PT, halt_place, is_on_the_way, stands_on_a_step
+from reasoned_explorer.evaluation.mission_signs import (
+    HALT_PT,
+    START_PT,
+    STEP_PT,
+    halt_place,
+    is_on_the_way,
+    stands_on_a_step,
+)
 from reasoned_explorer.evaluation.mission_trace import MapFrontier, MapGoal, MissionTrace
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.world.drawing_style import mix, printable, shortened, width_pt
@@ -25,11 +32,11 @@ from reasoned_explorer.world.textures import lines_of, polygon_of
 
 FloatArray = NDArray[np.float64]
 
-#: The marks' colours; those of the verdict are told apart by their sign as well.
 #: Where else a name may stand when there is no room beside its mark, in widths and heights of it.
 _FARTHER = ((0, -1.8), (0, 1.8), (0.7, -1.6), (-0.7, -1.6), (0.7, 1.6), (-0.7, 1.6))
+#: The marks' colours; those of the verdict are told apart by their sign as well.
 PINK = "#d6287a"
-TRACK_FROM, TRACK_TO = "#6f8fd0", "#14224f"
+TRACK_FROM, TRACK_TO = "#4f82ea", "#101c4a"
 GOLD, GOLD_EDGE = "#f2b01e", "#8a5a00"
 SHORTEST = "#1d1d1d"
 RIGHT, WRONG, NEUTRAL = "#00785a", "#c04a00", "#5b6068"
@@ -126,7 +133,7 @@ def paint_mission(board: Board, trace: MissionTrace, room: Room) -> None:
     _paint_track(board, np.asarray(trace.track, dtype=np.float64).reshape(-1, 2))
     pace = pace_pt(board, trace.path_points)
     _paint_frontiers(board, trace.frontiers, pace)
-    _paint_path_points(board, trace.path_points, pace)
+    _paint_path_points(board, trace, pace)
     _paint_goals(board, trace)
     _paint_start(board, trace.start)
     halt = halt_place(board, trace)
@@ -217,14 +224,14 @@ def _paint_track(board: Board, track: FloatArray) -> None:
     line = np.column_stack([np.interp(marks, at_m, track[:, 0]), np.interp(marks, at_m, track[:, 1])])
     shares = 0.5 * (marks[1:] + marks[:-1]) / at_m[-1]
     board.axes.add_collection(
-        LineCollection([track], colors=board.palette.paper, linewidths=6.6, zorder=7.0, joinstyle="round"),
+        LineCollection([track], colors=board.palette.paper, linewidths=7.6, zorder=7.0, joinstyle="round"),
         autolim=False,
     )
     board.axes.add_collection(
         LineCollection(
             list(np.stack([line[:-1], line[1:]], axis=1)),
             colors=[mix(TRACK_FROM, TRACK_TO, float(share)) for share in shares],
-            linewidths=4.0,
+            linewidths=4.6,
             zorder=7.1,
             capstyle="round",
         ),
@@ -247,48 +254,58 @@ def pace_pt(board: Board, points: Sequence[tuple[float, float]]) -> float:
 
 
 def _paint_frontiers(board: Board, frontiers: Sequence[MapFrontier], pace: float) -> None:
-    size_pt = min(max(0.26 * pace, 2.4), 6.6)
+    size_pt = min(max(0.24 * pace, 2.4), 5.6)
     order = {"visited": 0, "given up": 1, "blocked": 2, "open": 3}
     for frontier in sorted(frontiers, key=lambda f: (order[f.state], f.q or 0.0, f.x_m, f.y_m)):
         draw_frontier(board.axes, (frontier.x_m, frontier.y_m), frontier, size_pt)
 
 
 def draw_frontier(axes: Axes, place: tuple[float, float], frontier: MapFrontier, size_pt: float) -> None:
-    """Draw one way on: a diamond in its score's colour, a tick the way it looks, a dial that shows σ(d)."""
+    """Draw one way on: a diamond in its score's colour, a tick the way it looks, a dial that shows σ(d).
+
+    All of it lies under the track. One that is blocked is a small cross: there are many of them along every wall.
+    """
+    if frontier.state == "blocked":
+        stamp(axes, place, CROSS, size_pt * 0.55, edge="#ffffff", width=2.6, zorder=6.8)
+        stamp(axes, place, CROSS, size_pt * 0.55, edge=WRONG, width=1.2, zorder=6.81)
+        return
     faded = frontier.state in {"visited", "given up"}
     alpha = 0.45 if frontier.state == "given up" else 0.85 if faded else 1.0
     size = size_pt * (0.66 if faded else 1.0)
-    zorder = 8.0 if faded else 8.2
+    zorder = 6.82 if faded else 6.85
+    # Small marks have thin lines, so that many of them are not black.
+    thin = min(max(size_pt / 5.6, 0.6), 1.0)
     tick = turned(MarkPath([(0.0, 0.0), (0.0, 1.9)]), frontier.heading_rad)
-    stamp(axes, place, tick, size, edge="#ffffff", width=2.4, alpha=alpha, zorder=zorder)
-    stamp(axes, place, tick, size, edge="#2b3036", width=1.0, alpha=alpha, zorder=zorder)
+    stamp(axes, place, tick, size, edge="#ffffff", width=2.4 * thin, alpha=alpha, zorder=zorder)
+    stamp(axes, place, tick, size, edge="#2b3036", width=1.0 * thin, alpha=alpha, zorder=zorder)
     if frontier.penalty is not None and not faded:
-        stamp(axes, place, arc_path(1.0), size * 1.25, edge="#ffffff", width=1.8, alpha=0.9, zorder=zorder)
-        stamp(axes, place, arc_path(frontier.penalty), size * 1.25, edge="#2b3036", width=1.2, zorder=zorder + 0.01)
+        stamp(axes, place, arc_path(1.0), size * 1.25, edge="#ffffff", width=1.8 * thin, alpha=0.9, zorder=zorder)
+        stamp(
+            axes, place, arc_path(frontier.penalty), size * 1.25, edge="#2b3036", width=1.2 * thin, zorder=zorder + 0.01
+        )
     colour = score_colour(frontier.q)
-    stamp(axes, place, DIAMOND, size, face=colour, edge="#ffffff", width=0.9, alpha=alpha, zorder=zorder + 0.02)
-    if frontier.state == "blocked":
-        stamp(axes, place, CROSS, size * 0.85, edge="#ffffff", width=3.0, zorder=zorder + 0.03)
-        stamp(axes, place, CROSS, size * 0.85, edge=WRONG, width=1.6, zorder=zorder + 0.04)
+    stamp(axes, place, DIAMOND, size, face=colour, edge="#ffffff", width=0.9 * thin, alpha=alpha, zorder=zorder + 0.02)
 
 
-def _paint_path_points(board: Board, points: Sequence[tuple[float, float]], pace: float) -> None:
-    """Where decisions were made: numbered, or dots with every fifth one numbered where they lie close together."""
+def _paint_path_points(board: Board, trace: MissionTrace, pace: float) -> None:
+    """Where decisions were made: dots on the track, of which as many have their number as leave it in sight."""
     numbers = Room(board)
-    every = 1 if pace >= 13.0 else 5 if pace >= 4.0 else 10
-    for step, (x, y) in reversed(list(enumerate(points, start=1))):
-        wanted = every == 1 or step % every == 0
-        if wanted and numbers.take(np.array([[x, y]]), 5.6, whole=False):
+    numbers.block(np.array([(trace.start.x_m, trace.start.y_m)]), START_PT)
+    every = 1 if pace >= 22.0 else 5 if pace >= 4.0 else 10
+    size_pt = min(max(0.2 * pace, 1.6), 2.6)
+    last = len(trace.path_points)
+    for step, (x, y) in reversed(list(enumerate(trace.path_points, start=1))):
+        wanted = step % every == 0 or step == last
+        if wanted and numbers.take(np.array([[x, y]]), 7.0, whole=False):
             draw_path_point(board.axes, (x, y), str(step))
         else:
-            size_pt = min(max(0.24 * pace, 1.6), 2.8)
-            stamp(board.axes, (x, y), DISC, size_pt, face=PINK, edge="#ffffff", width=0.5, zorder=8.6)
+            stamp(board.axes, (x, y), DISC, size_pt, face=PINK, edge="#ffffff", width=0.6, zorder=8.6)
 
 
 def draw_path_point(axes: Axes, place: tuple[float, float], text: str) -> None:
-    """Draw one decision: a pink disc with the number of its step."""
-    stamp(axes, place, DISC, 6.0, face=PINK, edge="#ffffff", width=1.0, zorder=8.7)
-    size = 7.0 if len(text) < 2 else 6.2 if len(text) < 3 else 4.8
+    """Draw one decision: a pink disc with its number."""
+    stamp(axes, place, DISC, STEP_PT - 0.7, face=PINK, edge="#ffffff", width=0.9, zorder=8.7)
+    size = 6.4 if len(text) < 2 else 5.6 if len(text) < 3 else 4.2
     put_text(
         axes,
         *place,
@@ -330,8 +347,8 @@ def _paint_start(board: Board, start: Pose) -> None:
 
 def draw_start(axes: Axes, place: tuple[float, float], heading_rad: float) -> None:
     """Draw the start: an arrow on a white disc."""
-    stamp(axes, place, DISC, 9.5, face="#ffffff", edge=TRACK_TO, width=1.2, zorder=9.0)
-    stamp(axes, place, turned(ARROW, heading_rad), 5.4, face=TRACK_TO, zorder=9.1)
+    stamp(axes, place, DISC, 8.6, face="#ffffff", edge=TRACK_TO, width=1.2, zorder=9.0)
+    stamp(axes, place, turned(ARROW, heading_rad), 5.0, face=TRACK_TO, zorder=9.1)
 
 
 def verdict(trace: MissionTrace) -> tuple[str, str]:

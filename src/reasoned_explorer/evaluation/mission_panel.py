@@ -10,11 +10,13 @@ from matplotlib.patches import FancyBboxPatch, Rectangle
 from reasoned_explorer.evaluation import mission_marks as marks
 from reasoned_explorer.evaluation.mission_trace import MapFrontier, MissionTrace
 from reasoned_explorer.world.drawing_style import mix, wrapped
-from reasoned_explorer.world.sheet import WIDTH_PT, Sheet
+from reasoned_explorer.world.sheet import WIDTH_PT, Sheet, swatch
 from reasoned_explorer.world.symbols import symbol_of
 from reasoned_explorer.world.taxonomy import OBJECT_CLASSES
 
 MARGIN_PT = 30.0
+#: The slanting lines beyond the edge of the world.
+OUTSIDE = "#d3cec3"
 _FACT_ROW_PT = 15.5
 _LEGEND_ROW_PT = 15.0
 
@@ -141,7 +143,11 @@ def legend_entries(sheet: Sheet, trace: MissionTrace) -> list[tuple[str, Callabl
     entries: list[tuple[str, Callable[[float, float], None], bool]] = [
         ("start and heading", lambda x, y: marks.draw_start(page, (x, y), 0.7), True),
         ("track, darker with time", line(ramp, 4.0, "solid"), len(trace.track) > 1),
-        ("decision and its step", lambda x, y: marks.draw_path_point(page, (x, y), "3"), bool(trace.path_points)),
+        (
+            "place of a decision, in order",
+            lambda x, y: marks.draw_path_point(page, (x, y), "3"),
+            bool(trace.path_points),
+        ),
         ("way on; dial: penalty σ(d)", frontier("open", 0.65), "open" in states),
         ("way on that was taken", frontier("visited", None), "visited" in states),
         ("given up", frontier("given up", None), "given up" in states),
@@ -157,6 +163,11 @@ def legend_entries(sheet: Sheet, trace: MissionTrace) -> list[tuple[str, Callabl
             "would do at a pinch",
             lambda x, y: _goal_swatch(sheet, x, y, 1),
             any(goal.grade < 2 for goal in trace.goals),
+        ),
+        (
+            f"no world; {trace.left_out} ways on left out",
+            lambda x, y: swatch(sheet, x - 7.5, y - 4.5, sheet.palette.paper, hatch=OUTSIDE),
+            trace.left_out > 0,
         ),
     ]
     return [(text, draw) for text, draw, occurs in entries if occurs]

@@ -12,7 +12,7 @@ from reasoned_explorer.world.painting import Board
 FloatArray = NDArray[np.float64]
 
 #: Radii on the sheet, points, white rims included.
-HALT_PT, START_PT, STEP_PT, TRACK_PT, FRONTIER_PT, GOAL_PT = 10.6, 10.2, 6.6, 3.4, 8.3, 10.0
+HALT_PT, START_PT, STEP_PT, TRACK_PT, FRONTIER_PT, GOAL_PT = 10.6, 9.3, 5.6, 3.8, 7.2, 10.0
 #: What happened keeps so far from the frame of the map, points: as far as its largest mark reaches.
 RIM_PT = 16.0
 #: The pole of the halt: its lengths, points, and directions, degrees from north, the best first.

@@ -1,13 +1,14 @@
 """What the picture of a mission is made from, free of how missions are run and recorded."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model.errors import Fault
+from reasoned_explorer.world.world import Bounds
 
 FloatArray = NDArray[np.float64]
 
@@ -77,6 +78,7 @@ class MissionTrace:
         success: Whether that was true; None if nobody judged it.
         facts: Names and values for the side panel.
         notes: Honest footnotes, e.g. ``"embedded minds, no language model"``.
+        left_out: How many ways on are not among the frontiers, since they lie outside the world.
     """
 
     title: str
@@ -94,6 +96,12 @@ class MissionTrace:
     success: bool | None = None
     facts: tuple[tuple[str, str], ...] = ()
     notes: tuple[str, ...] = ()
+    left_out: int = 0
+
+    def within(self, bounds: Bounds) -> "MissionTrace":
+        """Return the trace without the ways on that lie outside of a world's bounds, where a map shows nothing."""
+        inside = tuple(each for each in self.frontiers if bounds.contains(each.x_m, each.y_m))
+        return replace(self, frontiers=inside, left_out=self.left_out + len(self.frontiers) - len(inside))
 
     def faults(self) -> list[Fault]:
         """Return everything that makes it impossible to draw."""

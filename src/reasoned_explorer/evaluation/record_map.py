@@ -23,7 +23,7 @@ def draw_record(world: World, record: EpisodeRecord, path: Path) -> None:
 
 
 def trace_of(record: EpisodeRecord, world: World) -> MissionTrace:
-    """Return what a record shows on a map."""
+    """Return what a record shows on a map of its world."""
     header, summary = record.header, record.summary
     start = Pose(*header.start)
     points, edges = _points_and_edges(record)
@@ -49,7 +49,7 @@ def trace_of(record: EpisodeRecord, world: World) -> MissionTrace:
         success=summary.success if summary else None,
         facts=_facts(summary) if summary else (("incomplete", "cut off"),),
         notes=(f"{header.minds}; CT {header.ct_label}", f"judged by rule: R = {header.success_radius_m:g} m"),
-    )
+    ).within(world.bounds)
 
 
 def _points_and_edges(
