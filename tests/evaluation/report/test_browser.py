@@ -122,4 +122,4 @@ def test_an_address_that_asks_for_nothing_known_shows_nothing(page: Path, tmp_pa
     document = dom(page, "#method=%3Cimg%20src%3Dx%3E&outcome=wonder", tmp_path / "profile")
     assert listed(document) == []
     assert "<img src=x>" not in document
-    assert status(document) == "0 of 0 missions of <img src=x>: wonder"
+    assert status(document) == "0 of 0 missions of <img src=x> (there is none of that name): wonder"
