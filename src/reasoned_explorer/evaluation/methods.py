@@ -39,7 +39,7 @@ GROUPS: Mapping[str, tuple[str, ...]] = {
     "bounds": BOUND_METHODS,
     "controls": CONTROL_METHODS,
     "halts": tuple(f"{name}{_HALT_SUFFIX}" for name in PLANNER_METHODS),
-    "default": (*PLANNER_METHODS, *BOUND_METHODS),
+    "default": (*PLANNER_METHODS, "oracle", "foresight-60m"),
     "all": (
         *PLANNER_METHODS,
         *CONTROL_METHODS,

@@ -55,6 +55,8 @@ from reasoned_explorer.world.world import World
 #: A seeded random start is at least and at most this far, on the shortest compliant way, from being successful, where
 #: there is such a start.
 START_RANGE_M = (60.0, 400.0)
+#: How rarely garbage is looked for while missions run, as `gc.set_threshold` takes it.
+RARELY = (50_000, 50, 1_000)
 
 
 @dataclass(frozen=True, slots=True)
@@ -414,7 +416,7 @@ def _versions() -> tuple[tuple[str, str], ...]:
 def _rare_collections() -> Iterator[None]:
     """Look for garbage cycles rarely: a mission makes few, and looking goes through the whole world each time."""
     before = gc.get_threshold()
-    gc.set_threshold(50_000, 50, 1_000)
+    gc.set_threshold(*RARELY)
     try:
         yield
     finally:

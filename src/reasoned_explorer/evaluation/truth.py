@@ -91,9 +91,12 @@ class FrontierSight:
         self._has_left |= not self._shuns(here)
         level, free_m = self._truth.judge.spec.level, self._free_m(here)
         there, remaining_m = here, math.inf
+        gone_m = -1.0
         for _ in range(4):
-            step_m = self._truth.explorer.step_m(score_of(remaining_m), level)
-            there = here.ahead(min(step_m, free_m))
+            leg_m = min(self._truth.explorer.step_m(score_of(remaining_m), level), free_m)
+            if leg_m == gone_m:  # settled
+                break
+            gone_m, there = leg_m, here.ahead(leg_m)
             remaining_m = self._truth.remaining.at(there.x_m, there.y_m)
         return there, remaining_m
 
@@ -111,7 +114,8 @@ class FrontierSight:
         if not profile.flies:
             touches |= np.isin(self._truth.atlas.ground.at_many(places[:, 0], places[:, 1]), _IMPASSABLE)
         bounds = self._truth.atlas.world.bounds
-        touches |= [not bounds.contains(float(x), float(y)) for x, y in places]
+        touches |= (places < (bounds.min_x_m, bounds.min_y_m)).any(axis=1)
+        touches |= (places > (bounds.max_x_m, bounds.max_y_m)).any(axis=1)
         return longest_m if not touches.any() else max(0.0, float(lengths[int(np.argmax(touches))]) - _SAMPLE_M)
 
     def is_open(self, here: Pose, there: Pose, remaining_m: float) -> bool:

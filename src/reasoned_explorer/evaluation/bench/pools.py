@@ -1,5 +1,6 @@
 """Who runs the missions of a run on this machine: this process, or several."""
 
+import gc
 import os
 import signal
 import threading
@@ -14,6 +15,7 @@ from typing import Any, TypeVar
 
 from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
 from reasoned_explorer.evaluation.bench.worker import Done, failed_row, run_task
+from reasoned_explorer.evaluation.mission import RARELY
 from reasoned_explorer.model.stopping import stop_if_asked
 
 T = TypeVar("T")
@@ -192,6 +194,7 @@ def _deaf() -> Iterator[None]:
 def _begin(plan: BenchPlan) -> None:
     global _plan  # noqa: PLW0603 - what a worker process is for
     _plan = plan
+    gc.set_threshold(*RARELY)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 

@@ -104,7 +104,7 @@ def run_task(plan: BenchPlan, task: Task) -> Done:
     else:
         row = _row_of(plan, task, item, result)
         if plan.keep_traces:
-            trace = zlib.compress(record_bytes(result.record), 6)
+            trace = zlib.compress(record_bytes(result.record), 4)
     failed = row.end == MissionEnd.FAULT.value
     return Done(task, row.as_json(), trace, time.perf_counter() - started_s, failed, row.usd)
 
