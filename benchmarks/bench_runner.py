@@ -27,7 +27,7 @@ from reasoned_explorer.evaluation.bench.runner import Workers, run_bench
 from reasoned_explorer.evaluation.bench.store import RunStore
 from reasoned_explorer.evaluation.mission import MissionSettings
 from reasoned_explorer.exploration.settings import ExplorerSettings
-from reasoned_explorer.task.splitting import Dealing, make_split, places_of_worlds
+from reasoned_explorer.task.splitting import Dealing, Share, make_split, places_of_worlds
 
 PLANNERS = ("llm-rrt", "llm-as-eval", "nearest-frontier")
 
@@ -35,7 +35,7 @@ PLANNERS = ("llm-rrt", "llm-as-eval", "nearest-frontier")
 def plan_of(t_max_s: float, *, seeds: int = 1, planners: tuple[str, ...] = PLANNERS) -> BenchPlan:
     """Return a plan over four small worlds."""
     worlds = ["park:31@400", "plaza:32@400", "downtown:33@400", "campus:34@400"]
-    split = make_split("runner", places_of_worlds(worlds), per_cell=1, dealing=Dealing(5))
+    split = make_split("runner", places_of_worlds(worlds), share=Share(), dealing=Dealing(5))
     base = MissionSettings(explorer=ExplorerSettings(t_max_s=t_max_s))
     return BenchPlan(split, planners, base=base, seeds=tuple(range(seeds)), keep_traces=seeds == 1)
 

@@ -4,12 +4,12 @@ import pytest
 
 from reasoned_explorer.model import InputError
 from reasoned_explorer.task.split import BANDS_M, Split
-from reasoned_explorer.task.splitting import Dealing, ceiling_casr, generated_places, make_split, places_of_worlds
+from reasoned_explorer.task.splitting import Dealing, Share, built_in_split, ceiling_casr, make_split, places_of_worlds
 
 
 @pytest.fixture(scope="module")
 def split() -> Split:
-    return make_split("here", places_of_worlds(["plaza:4@400"]), per_cell=1, dealing=Dealing(1))
+    return make_split("here", places_of_worlds(["plaza:4@400"]), share=Share(), dealing=Dealing(1))
 
 
 def test_a_split_is_the_same_after_it_was_written_down(split: Split) -> None:
@@ -65,15 +65,15 @@ def test_the_ceiling_is_that_of_who_knows_the_way(split: Split) -> None:
 
 
 def test_built_in_splits_have_every_district_as_often() -> None:
-    places, per_cell, _ = generated_places("full")
-    districts = [place.district for place in places]
+    full = built_in_split("full")
+    districts = [place.district for place in full.places]
     assert {districts.count(name) for name in districts} == {5}
-    assert len(places) * per_cell * 12 >= 400
+    assert sum(sum(full.share.cells(number).values()) for number in range(len(full.places))) >= 400
 
 
 def test_the_built_in_split_is_the_same_on_every_machine() -> None:
-    places, per_cell, seed = generated_places("mini")
-    mini = make_split("mini", places, per_cell=per_cell, dealing=Dealing(seed))
+    how = built_in_split("mini")
+    mini = make_split("mini", how.places, share=how.share, dealing=Dealing(how.seed))
     # Whoever changes the generator, the goals or how starts are drawn makes another split: a new SPLIT_VERSION.
-    assert mini.label == "mini v1 [9f0b9984b9d5]"
-    assert len(mini.episodes) == 84
+    assert mini.label == "mini v1 [4b3560afafe0]"
+    assert len(mini.episodes) == 56

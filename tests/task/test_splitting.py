@@ -5,7 +5,7 @@ import pytest
 
 from reasoned_explorer.model import InputError, SettingsError, StartError, UnknownNameError, WorldError
 from reasoned_explorer.task.split import BANDS_M, LEVELS, Place
-from reasoned_explorer.task.splitting import Dealing, generated_places, make_split, open_place, places_of_worlds
+from reasoned_explorer.task.splitting import Dealing, Share, built_in_split, make_split, open_place, places_of_worlds
 from reasoned_explorer.world.files import save_world
 from reasoned_explorer.world.generator import generate_world
 
@@ -25,14 +25,22 @@ def test_a_cell_deals_the_same_whatever_else_is_asked_for() -> None:
 
 
 def test_a_split_is_balanced_over_levels_and_distances() -> None:
-    split = make_split("two", [PLAZA, PARK], per_cell=1, dealing=Dealing(2))
+    split = make_split("two", [PLAZA, PARK], share=Share(), dealing=Dealing(2))
     counts = Counter((item.episode.spec.level, item.band) for item in split.episodes)
     assert set(counts.values()) == {2}
     assert len({item.episode.id for item in split.episodes}) == len(split.episodes)
 
 
+def test_where_a_place_is_asked_for_some_distances_these_go_round() -> None:
+    cells = [set(Share(distances=2).cells(place)) for place in range(3)]
+    assert {len(asked) for asked in cells} == {2 * len(LEVELS)}
+    counts = Counter(cell for asked in cells for cell in asked)
+    assert len(counts) == len(LEVELS) * len(BANDS_M)
+    assert set(counts.values()) == {2}
+
+
 def test_what_one_place_lacks_is_dealt_by_another() -> None:
-    split = make_split("lacking", [BARE, PLAZA], per_cell=1, dealing=Dealing(2))
+    split = make_split("lacking", [BARE, PLAZA], share=Share(), dealing=Dealing(2))
     counts = Counter((item.episode.spec.level, item.band) for item in split.episodes)
     from_plaza = Counter((item.episode.spec.level, item.band) for item in split.episodes if item.place == PLAZA.name)
     assert max(from_plaza.values()) == 2
@@ -44,8 +52,8 @@ def test_the_order_in_which_places_are_dealt_changes_nothing() -> None:
         made = [deal(place, wanted) for place, wanted in reversed(list(zip(places, cells, strict=True)))]
         return made[::-1]
 
-    one = make_split("s", [PLAZA, PARK], per_cell=1, dealing=Dealing(2))
-    other = make_split("s", [PLAZA, PARK], per_cell=1, dealing=Dealing(2), map_places=backwards)
+    one = make_split("s", [PLAZA, PARK], share=Share(), dealing=Dealing(2))
+    other = make_split("s", [PLAZA, PARK], share=Share(), dealing=Dealing(2), map_places=backwards)
     assert one == other
 
 
@@ -53,7 +61,7 @@ def test_starts_are_fit_for_every_body() -> None:
     from reasoned_explorer.simulation.vehicle import check_start
     from reasoned_explorer.vehicles.registry import VEHICLES, vehicle_profile
 
-    split = make_split("s", [PLAZA], per_cell=1, dealing=Dealing(2))
+    split = make_split("s", [PLAZA], share=Share(), dealing=Dealing(2))
     atlas = open_place(PLAZA)
     for item in split.episodes:
         for name in VEHICLES.names():
@@ -75,18 +83,18 @@ def test_a_neighbourhood_without_anything_deals_nothing() -> None:
     sea = Place("sea", str(SHARED / "monaco-2025.osm.pbf"), (7.4329, 43.7232, 7.4447, 43.7331), "monaco")
     assert Dealing(1).deal(sea, {(1, "near"): 1}).episodes == ()
     with pytest.raises(StartError, match="no episode can be posed in sea"):
-        make_split("s", [sea], per_cell=1, dealing=Dealing(1))
+        make_split("s", [sea], share=Share(), dealing=Dealing(1))
 
 
 def test_what_cannot_be_made_is_refused() -> None:
     with pytest.raises(UnknownNameError, match="one of full, mini"):
-        generated_places("huge")
+        built_in_split("huge")
     with pytest.raises(SettingsError, match="each world once"):
         places_of_worlds(["park:1@200", "park:1@200"])
     with pytest.raises(WorldError):
         places_of_worlds(["nowhere.osm.pbf"])
     with pytest.raises(InputError, match="0 episodes a cell"):
-        make_split("s", [PLAZA], per_cell=0, dealing=Dealing(1))
+        make_split("s", [PLAZA], share=Share(0), dealing=Dealing(1))
 
 
 def test_two_maps_of_one_name_are_two_cities(tmp_path: Path) -> None:

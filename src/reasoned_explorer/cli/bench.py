@@ -42,7 +42,14 @@ from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.model import Fault, Gathering, InputError, RecordWriteError, SettingsError
 from reasoned_explorer.model.checks import is_there
 from reasoned_explorer.task.split import Place, Split
-from reasoned_explorer.task.splitting import SPLIT_NAMES, Dealing, ceiling_casr, generated_places, places_of_worlds
+from reasoned_explorer.task.splitting import (
+    SPLIT_NAMES,
+    Dealing,
+    Share,
+    built_in_split,
+    ceiling_casr,
+    places_of_worlds,
+)
 from reasoned_explorer.vehicles.registry import vehicle_profile
 from reasoned_explorer.world.opening import check_world_name
 
@@ -259,14 +266,15 @@ def _is_empty(folder: Path) -> bool:
     return folder.is_dir() and not any(folder.iterdir())
 
 
-def _places(options: BenchOptions, found: Gathering) -> tuple[tuple[Place, ...], int, int] | None:
-    """Return where the episodes take place, how many each place deals per cell, and the seed; keep what is wrong."""
+def _places(options: BenchOptions, found: Gathering) -> tuple[tuple[Place, ...], Share, int] | None:
+    """Return where the episodes take place, what each place is asked for, and the seed; keep what is wrong."""
     bbox = found.take(lambda: parse_bbox(options.bbox), None)
     if not options.worlds:
         if options.bbox is not None:
             fault = Fault(f"{options.bbox} without --world", "an OpenStreetMap file to crop")
             found.add(SettingsError("--bbox", [fault]))
-        return found.take(lambda: generated_places(options.split or SPLIT), None)
+        built_in = found.take(lambda: built_in_split(options.split or SPLIT), None)
+        return None if built_in is None else (built_in.places, built_in.share, built_in.seed)
     if options.split is not None:
         fault = Fault(f"{options.split} beside --world", "one of the two", "worlds make a split of their own")
         found.add(SettingsError("--split", [fault]))
@@ -275,11 +283,11 @@ def _places(options: BenchOptions, found: Gathering) -> tuple[tuple[Place, ...],
     if found.errors:
         return None  # reading worlds takes long, and something is wrong already
     places = found.take(lambda: places_of_worlds(options.worlds, bbox=bbox), None)
-    return None if places is None else (places, 2, OWN_SPLIT_SEED)
+    return None if places is None else (places, Share(2), OWN_SPLIT_SEED)
 
 
 def _split(
-    options: BenchOptions, places: tuple[Place, ...], per_cell: int, seed: int, *, levels: tuple[int, ...], workers: int
+    options: BenchOptions, places: tuple[Place, ...], share: Share, seed: int, *, levels: tuple[int, ...], workers: int
 ) -> Split:
     name = "own" if options.worlds else options.split or SPLIT
     if options.split_seed is not None or (not options.worlds and options.per_cell is not None):
@@ -289,8 +297,8 @@ def _split(
         time_limit_s=options.t_max_min * 60.0,
         radius_m=options.radius_m,
     )
-    dealt = per_cell if options.per_cell is None else options.per_cell
-    split = split_of(name, places, per_cell=dealt, dealing=dealing, workers=workers)
+    asked = share if options.per_cell is None else replace(share, per_cell=options.per_cell)
+    split = split_of(name, places, share=asked, dealing=dealing, workers=workers)
     return split.only(levels=levels) if levels else split
 
 

@@ -36,14 +36,60 @@ CAMERA_HEIGHT_M = 1.0
 #: The edge of a generated place, metres; real places are cut into neighbourhoods of about a square kilometre.
 GENERATED_SIZE_M = 500.0
 NEIGHBOURHOOD_M = 1000.0
-_SPLITS = {"mini": (1, 1), "full": (5, 1)}
-#: Seeds of the built-in splits; nothing was developed on the worlds that come out of them.
-_SPLIT_SEED = {"mini": 20_261, "full": 20_262}
-SPLIT_NAMES = tuple(_SPLITS)
-
-
 #: Level and band, and how many episodes of them.
 Cells = Mapping[tuple[int, str], int]
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """What each place of a split is asked for.
+
+    Attributes:
+        per_cell: Episodes of each level and distance, 1 or more.
+        distances: At how many of the distances of `BANDS_M` each level is posed in a place, 1 to 3; which of them goes
+            round from level to level and from place to place, so that all come equally often.
+    """
+
+    per_cell: int = 1
+    distances: int = len(BANDS_M)
+
+    def cells(self, place: int) -> Cells:
+        """Return what the place of that number is asked for."""
+        return {
+            (level, band): self.per_cell
+            for row, level in enumerate(LEVELS)
+            for col, band in enumerate(BANDS_M)
+            if (place + row + col) % len(BANDS_M) < self.distances
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltIn:
+    """A split that this package brings.
+
+    Attributes:
+        worlds: How many of each district.
+        share: What each is asked for.
+        seed: Of all of it; nothing was developed on the worlds that come out.
+    """
+
+    worlds: int
+    share: Share
+    seed: int
+
+    @property
+    def places(self) -> tuple[Place, ...]:
+        """The generated worlds."""
+        names = [
+            (district, f"{district}:{key_of(self.seed, 'world', district, number) % 1_000_000}@{GENERATED_SIZE_M:g}")
+            for number in range(self.worlds)
+            for district in DISTRICTS
+        ]
+        return tuple(Place(name, name, district=district) for district, name in names)
+
+
+_SPLITS = {"mini": BuiltIn(1, Share(distances=2), 20_261), "full": BuiltIn(5, Share(), 20_262)}
+SPLIT_NAMES = tuple(_SPLITS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,22 +109,15 @@ class Dealt:
     episodes: tuple[SplitEpisode, ...]
 
 
-def generated_places(split: str) -> tuple[tuple[Place, ...], int, int]:
-    """Return the places of a built-in split, how many episodes each deals per cell, and the seed.
+def built_in_split(name: str) -> BuiltIn:
+    """Return how a built-in split is made.
 
     Raises:
         UnknownNameError: If there is no such split.
     """
-    if split not in _SPLITS:
-        raise UnknownNameError("split", split, SPLIT_NAMES)
-    worlds, per_cell = _SPLITS[split]
-    seed = _SPLIT_SEED[split]
-    names = [
-        (district, f"{district}:{key_of(seed, 'world', district, number) % 1_000_000}@{GENERATED_SIZE_M:g}")
-        for number in range(worlds)
-        for district in DISTRICTS
-    ]
-    return tuple(Place(name, name, district=district) for district, name in names), per_cell, seed
+    if name not in _SPLITS:
+        raise UnknownNameError("split", name, SPLIT_NAMES)
+    return _SPLITS[name]
 
 
 def places_of_worlds(
@@ -221,19 +260,19 @@ def make_split(
     name: str,
     places: Sequence[Place],
     *,
-    per_cell: int,
+    share: Share,
     dealing: Dealing,
     map_places: MapPlaces = map,
 ) -> Split:
     """Return a split of places, balanced over levels and distances as far as they allow.
 
     What one place lacks is filled by others, one episode from each in turn, so that each level and distance has as
-    many episodes as the others wherever that can be.
+    many episodes as were asked for wherever that can be.
 
     Args:
         name: Of the split.
         places: Where.
-        per_cell: Episodes of each level and distance in each place, 1 or more.
+        share: What each is asked for.
         dealing: How.
         map_places: `map`, or the map of a pool.
 
@@ -242,19 +281,20 @@ def make_split(
         SettingsError: If numbers are out of range.
         InputError: If a world cannot be opened.
     """
-    if per_cell < 1 or not places:
-        fault = Fault(f"{per_cell} episodes a cell in {len(places)} places", "at least one of each")
-        raise SettingsError("split", [fault])
-    wanted = {(level, band): per_cell for level in LEVELS for band in BANDS_M}
-    dealt = list(map_places(dealing.deal, places, [wanted] * len(places)))
+    if share.per_cell < 1 or not places or not 1 <= share.distances <= len(BANDS_M):
+        what = f"{share.per_cell} episodes a cell at {share.distances} distances in {len(places)} places"
+        raise SettingsError("split", [Fault(what, f"at least one of each, and at most {len(BANDS_M)} distances")])
+    asked = [share.cells(number) for number in range(len(places))]
+    dealt = list(map_places(dealing.deal, places, asked))
     counts = Counter(cell for found in dealt for cell in _cells(found))
-    lacking = {cell: per_cell for cell in wanted if counts[cell] < per_cell * len(places)}
-    if lacking:
+    lack = Counter(cell for cells in asked for cell in cells for _ in range(share.per_cell))
+    lack.subtract(counts)
+    lack = +lack
+    if lack:
         # The places deal once more what is lacking, and twice as much: the second half is new.
-        more = list(map_places(dealing.deal, places, [dict.fromkeys(lacking, 2 * per_cell)] * len(places)))
-        dealt = [
-            _filled(found, again) for found, again in zip(dealt, _spared(dealt, more, counts, per_cell), strict=True)
-        ]
+        more = list(map_places(dealing.deal, places, [dict.fromkeys(sorted(lack), 2 * share.per_cell)] * len(places)))
+        spared = _spared(dealt, more, lack, share.per_cell)
+        dealt = [_filled(found, again) for found, again in zip(dealt, spared, strict=True)]
     found_in = [found for found in dealt if found.episodes]
     if not found_in:
         what = f"no episode can be posed in {', '.join(place.name for place in places)}"
@@ -274,7 +314,7 @@ def _cells(found: Dealt) -> list[tuple[int, str]]:
 
 
 def _spared(
-    dealt: Sequence[Dealt], more: Sequence[Dealt], counts: Counter[tuple[int, str]], per_cell: int
+    dealt: Sequence[Dealt], more: Sequence[Dealt], lack: Counter[tuple[int, str]], per_cell: int
 ) -> list[list[SplitEpisode]]:
     """Return what each place has to spare of the cells that others lack, one from each in turn until nothing lacks."""
     had = [{item.episode.id for item in found.episodes} for found in dealt]
@@ -283,16 +323,15 @@ def _spared(
         for again, known in zip(more, had, strict=True)
     ]
     given: list[list[SplitEpisode]] = [[] for _ in dealt]
-    lack = {cell: per_cell * len(dealt) - count for cell, count in counts.items()}
-    lack.update({cell: per_cell * len(dealt) for found in more for cell in _cells(found) if cell not in counts})
+    left = Counter(lack)
     for turn in range(per_cell):
         for index, items in enumerate(spare):
             by_cell: dict[tuple[int, str], list[SplitEpisode]] = {}
             for item in items:
                 by_cell.setdefault((item.episode.spec.level, item.band), []).append(item)
             for cell, mine in by_cell.items():
-                if turn < len(mine) and lack[cell] > 0:
-                    lack[cell] -= 1
+                if turn < len(mine) and left[cell] > 0:
+                    left[cell] -= 1
                     given[index].append(mine[turn])
     return given
 

@@ -6,7 +6,7 @@ from reasoned_explorer.evaluation.bench.plan import BenchPlan
 from reasoned_explorer.evaluation.mission import MissionSettings
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.task.split import Split
-from reasoned_explorer.task.splitting import Dealing, make_split, places_of_worlds
+from reasoned_explorer.task.splitting import Dealing, Share, make_split, places_of_worlds
 
 SHORT = MissionSettings(explorer=ExplorerSettings(t_max_s=120.0))
 
@@ -14,7 +14,7 @@ SHORT = MissionSettings(explorer=ExplorerSettings(t_max_s=120.0))
 @pytest.fixture(scope="session")
 def small_split() -> Split:
     places = places_of_worlds(["park:5@300", "plaza:5@300"])
-    return make_split("small", places, per_cell=1, dealing=Dealing(3, time_limit_s=120.0))
+    return make_split("small", places, share=Share(), dealing=Dealing(3, time_limit_s=120.0))
 
 
 @pytest.fixture(scope="session")

@@ -13,7 +13,7 @@ from reasoned_explorer.evaluation.bench.pools import MAX_TRIES, Queues, run_in_p
 from reasoned_explorer.evaluation.bench.runner import BenchProgress, Workers, run_bench, split_of
 from reasoned_explorer.evaluation.bench.store import RunStore
 from reasoned_explorer.task.split import Split
-from reasoned_explorer.task.splitting import Dealing
+from reasoned_explorer.task.splitting import Dealing, Share
 
 
 def rows_of(folder: Path) -> list[str]:
@@ -64,7 +64,7 @@ def test_progress_knows_pace_and_what_is_left() -> None:
 
 def test_a_split_is_the_same_whoever_deals_it(small_split: Split) -> None:
     dealing = Dealing(3, time_limit_s=120.0)
-    assert split_of("small", small_split.places, per_cell=1, dealing=dealing, workers=2) == small_split
+    assert split_of("small", small_split.places, share=Share(), dealing=dealing, workers=2) == small_split
 
 
 _KILLED = """

@@ -10,7 +10,7 @@ from reasoned_explorer.evaluation.bench.pools import map_in_processes, run_here,
 from reasoned_explorer.evaluation.bench.store import RunStore
 from reasoned_explorer.evaluation.bench.worker import Done
 from reasoned_explorer.task.split import Place, Split
-from reasoned_explorer.task.splitting import Dealing, make_split
+from reasoned_explorer.task.splitting import Dealing, Share, make_split
 
 
 @dataclass(slots=True)
@@ -68,16 +68,16 @@ class Workers:
         return run_in_processes(plan, tasks, workers=self.count)
 
 
-def split_of(name: str, places: tuple[Place, ...], *, per_cell: int, dealing: Dealing, workers: int) -> Split:
+def split_of(name: str, places: tuple[Place, ...], *, share: Share, dealing: Dealing, workers: int) -> Split:
     """Return the split of places, dealt by several processes; the same split whatever their number.
 
     Raises:
         InputError: As `make_split`.
     """
     if workers == 1 or len(places) == 1:
-        return make_split(name, places, per_cell=per_cell, dealing=dealing)
+        return make_split(name, places, share=share, dealing=dealing)
     map_places = partial(map_in_processes, workers=min(workers, len(places)))
-    return make_split(name, places, per_cell=per_cell, dealing=dealing, map_places=map_places)
+    return make_split(name, places, share=share, dealing=dealing, map_places=map_places)
 
 
 def run_bench(store: RunStore, workers: Workers, on_done: Callable[[BenchProgress], None] | None = None) -> None:
