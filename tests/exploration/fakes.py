@@ -3,11 +3,11 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
+from reasoned_explorer.calls.ledger import Ledger
 from reasoned_explorer.clock import Clock, VirtualClock
 from reasoned_explorer.exploration.explorer import Exploration, Explorer, Parts
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
-from reasoned_explorer.minds.ledger import Ledger
 from reasoned_explorer.model import Goal, Leg, LegOutcome, PartError, Scene, TrackPoint, Verdict, View
 from reasoned_explorer.model.record import StepRecord
 from reasoned_explorer.planning import FrontierScore, Plan

@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 
+from reasoned_explorer.calls.ledger import Ledger
 from reasoned_explorer.clock import VirtualClock
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.minds.context import MindContext, Minds
 from reasoned_explorer.minds.latency import LatencyProfile, RoleLatency
-from reasoned_explorer.minds.ledger import Ledger
 from reasoned_explorer.minds.scripted import Fail, Scripts, make_minds
 from reasoned_explorer.model import Assessment, Goal, Scene, SettingsError, likert_from_score
 from reasoned_explorer.planning import Plan

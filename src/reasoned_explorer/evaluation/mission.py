@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from reasoned_explorer.calls.ledger import CallRecord, Ledger
 from reasoned_explorer.evaluation.guide import GUIDE_LABEL, Guide
 from reasoned_explorer.evaluation.mission_settings import CLOCKS, errors_of, with_overrides
 from reasoned_explorer.evaluation.mission_settings import MissionSettings as MissionSettings  # noqa: PLC0414 - is had from here, too
@@ -20,7 +21,6 @@ from reasoned_explorer.exploration.explorer import Exploration, Explorer, Parts
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.minds.context import MindContext
 from reasoned_explorer.minds.latency import latency_profile
-from reasoned_explorer.minds.ledger import CallRecord, Ledger
 from reasoned_explorer.minds.registry import make_minds
 from reasoned_explorer.model import (
     Fault,

@@ -5,11 +5,11 @@ from dataclasses import dataclass, field, fields, replace
 from functools import partial
 from typing import Any
 
+from reasoned_explorer.calls.ledger import Ledger
 from reasoned_explorer.clock import Clock, MixedClock, RealClock, VirtualClock
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.minds.context import MindContext
 from reasoned_explorer.minds.latency import latency_profile
-from reasoned_explorer.minds.ledger import Ledger
 from reasoned_explorer.minds.registry import MINDS, check_roles, make_minds
 from reasoned_explorer.model import Fault, Gathering, InputError, SettingsError, UnknownNameError
 from reasoned_explorer.perception.registry import CAPTIONERS

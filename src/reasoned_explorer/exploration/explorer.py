@@ -6,12 +6,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
+from reasoned_explorer.calls.ledger import Ledger
 from reasoned_explorer.clock import Clock
 from reasoned_explorer.exploration.draft import LookDraft, StepDraft
 from reasoned_explorer.exploration.graph import Choice, Frontier, FrontierState, TopologicalGraph
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose, normalise_heading_rad
-from reasoned_explorer.minds.ledger import Ledger
 from reasoned_explorer.minds.mind import GoalChecker
 from reasoned_explorer.model import Goal, LegOutcome, PartError, Scene, Verdict, View
 from reasoned_explorer.model.record import CallKept, MissionEnd, StepRecord

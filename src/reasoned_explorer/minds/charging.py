@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
+from reasoned_explorer.calls.ledger import CallRecord
 from reasoned_explorer.minds.context import MindContext
-from reasoned_explorer.minds.ledger import CallRecord
 
 
 async def charge_calls(

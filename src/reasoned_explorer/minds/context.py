@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import Any
 
+from reasoned_explorer.calls.ledger import Ledger
 from reasoned_explorer.clock import Clock
 from reasoned_explorer.minds.latency import LatencyProfile
-from reasoned_explorer.minds.ledger import Ledger
 from reasoned_explorer.minds.mind import Evaluator, GoalChecker, Visionary
 
 

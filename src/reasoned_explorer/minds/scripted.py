@@ -10,8 +10,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
+from reasoned_explorer.calls.ledger import CallRecord
 from reasoned_explorer.minds.context import MindContext, Minds
-from reasoned_explorer.minds.ledger import CallRecord
 from reasoned_explorer.model import (
     Assessment,
     Fault,
