@@ -1,1 +1,1 @@
-"""Calls to language and vision models: what is asked and answered, by whom, for how many seconds, tokens and dollars."""
+"""Calls to language and vision models: what is asked, what comes back, and what it costs."""
