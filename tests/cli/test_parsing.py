@@ -1,12 +1,13 @@
 import math
 from contextlib import suppress
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reasoned_explorer.cli.parsing import check_start_form, parse_bbox, parse_start
+from reasoned_explorer.cli.parsing import check_start_form, parse_bbox, parse_start, parse_worlds
 from reasoned_explorer.geometry import GeoOrigin
 from reasoned_explorer.model import ReasonedExplorerError, StartError, WorldError
 from tests.world.worlds import courtyard
@@ -70,3 +71,11 @@ def test_every_fault_of_a_text_says_something_of_its_own() -> None:
     with pytest.raises(WorldError) as raised:
         parse_bbox("1,2,3")
     assert [fault.what for fault in raised.value.faults] == ["3 values"]
+
+
+def test_worlds_stand_between_commas_and_a_file_with_commas_is_one(tmp_path: Path) -> None:
+    town = tmp_path / "bay,north.osm"
+    town.touch()
+    assert parse_worlds(["park:1@300, plaza:2@300", str(town)]) == ("park:1@300", "plaza:2@300", str(town))
+    assert parse_worlds([]) == ()
+    assert parse_worlds([""]) == ("",)

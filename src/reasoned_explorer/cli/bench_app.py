@@ -70,7 +70,7 @@ def bench(
         typer.Option(
             "--world",
             "--worlds",
-            help="Make a split of these worlds instead; may be repeated. Real places "
+            help="Make a split of these worlds instead, with commas or repeated. Real places "
             "are cut into neighbourhoods of about 1 km². NAME~permuted:SEED deals its labels anew.",
         ),
     ] = None,
@@ -113,13 +113,14 @@ def bench(
     Ctrl-C. What is finished is kept: go on with --resume.
     """
     from reasoned_explorer.cli.bench import BenchOptions, run_bench_from_options
+    from reasoned_explorer.cli.parsing import parse_worlds
 
     _refuse_beside_resume(context)
     run_bench_from_options(
         BenchOptions(
             split=split,
             planners=planners,
-            worlds=tuple(worlds or ()),
+            worlds=parse_worlds(worlds or ()),
             bbox=bbox,
             per_cell=per_cell,
             split_seed=split_seed,
@@ -187,7 +188,8 @@ def report(
 
 _Split = Annotated[str | None, typer.Option(help="mini or full; only its level 1 is run.", show_default="full")]
 _Worlds = Annotated[
-    list[str] | None, typer.Option("--world", "--worlds", help="A split of these worlds instead; may be repeated.")
+    list[str] | None,
+    typer.Option("--world", "--worlds", help="A split of these worlds instead, with commas or repeated."),
 ]
 _Bbox = Annotated[str | None, typer.Option(help="Crop OpenStreetMap files: lon0,lat0,lon1,lat1 (degrees).")]
 _PerCell = Annotated[int | None, typer.Option(help="Episodes of each distance in each place.")]
@@ -230,11 +232,12 @@ def ablate_depth_(
     """
     from reasoned_explorer.cli.ablate import ablate_depth
     from reasoned_explorer.cli.bench import BenchOptions
+    from reasoned_explorer.cli.parsing import parse_worlds
 
     _refuse_beside_resume(context)
     options = BenchOptions(
         split=split,
-        worlds=tuple(worlds or ()),
+        worlds=parse_worlds(worlds or ()),
         bbox=bbox,
         per_cell=per_cell,
         split_seed=split_seed,
@@ -281,11 +284,12 @@ def ablate_minds_(
     """
     from reasoned_explorer.cli.ablate import ablate_minds
     from reasoned_explorer.cli.bench import BenchOptions
+    from reasoned_explorer.cli.parsing import parse_worlds
 
     _refuse_beside_resume(context)
     options = BenchOptions(
         split=split,
-        worlds=tuple(worlds or ()),
+        worlds=parse_worlds(worlds or ()),
         bbox=bbox,
         per_cell=per_cell,
         split_seed=split_seed,

@@ -1,9 +1,12 @@
 """From what people type to values; every fault of a text is told at once."""
 
 import math
+from collections.abc import Sequence
+from pathlib import Path
 
 from reasoned_explorer.geometry import Pose, normalise_heading_rad
 from reasoned_explorer.model import Fault, SettingsError, StartError, WorldError
+from reasoned_explorer.model.checks import is_there
 from reasoned_explorer.world.world import World
 
 #: lon0, lat0, lon1, lat1.
@@ -100,6 +103,15 @@ def parse_planners(text: str) -> list[str]:
         elif part:
             names.append(part)
     return names
+
+
+def parse_worlds(texts: Sequence[str]) -> tuple[str, ...]:
+    """Return the worlds between the commas of each text; a file whose name has commas in it is one world."""
+    worlds: list[str] = []
+    for text in texts:
+        named = [text] if is_there(Path(text)) else [part.strip() for part in text.split(",")]
+        worlds.extend(name for name in named if name)
+    return tuple(worlds) if worlds or not texts else tuple(texts)
 
 
 def parse_seeds(text: str) -> tuple[int, ...]:

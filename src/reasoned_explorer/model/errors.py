@@ -164,10 +164,11 @@ class Gathering:
 
     @property
     def faults(self) -> list[Fault]:
-        """All that is wrong, each with what it is wrong with."""
-        return [
+        """All that is wrong, each with what it is wrong with, and each once."""
+        told = [
             replace(fault, what=f"{error.subject}: {fault.what}") for error in self.errors for fault in error.faults
         ]
+        return list(dict.fromkeys(told))
 
     def finish(self, subject: str) -> None:
         """Raise what was kept: a single error as it is, several as one of the type that they share.

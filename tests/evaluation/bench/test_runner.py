@@ -148,10 +148,13 @@ def test_ctrl_c_stops_a_run_and_its_processes_without_a_word(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
     ) as process:
         assert process.stdout is not None
+        assert process.stderr is not None
         for _ in range(finished + 1):
             process.stdout.readline()
         (os.killpg if to_all else os.kill)(process.pid, signal.SIGINT)
-        shown, errors = process.communicate(timeout=60)
+        # Not communicate(): it would miss lines that were read ahead.
+        shown, errors = process.stdout.read(), process.stderr.read()
+        process.wait(timeout=60)
     assert shown.splitlines()[-1] == "stopped"
     assert errors == ""
     assert process.returncode == 0

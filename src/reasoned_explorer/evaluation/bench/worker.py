@@ -59,6 +59,8 @@ def _atlas_of(place: Place, digest: str) -> Atlas:
         WorldError: If it cannot be opened, or is not the world that the split was made of.
     """
     gc.unfreeze()
+    # Judges hold on to their worlds, and the missions of a place are over once another is opened.
+    _judge_of.cache_clear()
     atlas = open_place(place)
     if atlas.digest != digest:
         what = f"{place.source} is another world than the one that the run's missions are of"
