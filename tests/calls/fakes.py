@@ -26,22 +26,16 @@ class FakeModel:
     is_local: bool = True
     asked: list[ChatRequest] = field(default_factory=list)
     cancelled: list[ChatRequest] = field(default_factory=list)
-    at_once: int = 0
-    most_at_once: int = 0
     was_cancelled: threading.Event = field(default_factory=threading.Event)
 
     async def ask(self, request: ChatRequest) -> ChatAnswer:
         self.asked.append(request)
-        self.at_once += 1
-        self.most_at_once = max(self.most_at_once, self.at_once)
         try:
             await asyncio.sleep(self.delay_s(request))
         except asyncio.CancelledError:
             self.cancelled.append(request)
             self.was_cancelled.set()
             raise
-        finally:
-            self.at_once -= 1
         answer: ChatAnswer = self.rule(request)
         return answer
 

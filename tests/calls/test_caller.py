@@ -58,16 +58,26 @@ def test_an_answer_comes_with_its_line_in_the_ledger(clock: Clock) -> None:
 
 
 def test_calls_of_a_batch_overlap() -> None:
-    model = FakeModel(delay_s=lambda _: 0.03)
+    class Gathering(FakeModel):
+        """Answers nobody before all nine have asked."""
 
-    async def mission(caller: Caller, clock: Clock) -> float:
-        await asyncio.gather(*(caller.ask(question(0, 0, index)) for index in range(9)))
-        return clock.now_s()
+        async def ask(self, request: ChatRequest) -> ChatAnswer:
+            self.asked.append(request)
+            if len(self.asked) == 1:
+                self.all_here = asyncio.Event()
+            if len(self.asked) == 9:
+                self.all_here.set()
+            async with asyncio.timeout(30.0):
+                await self.all_here.wait()
+            return ChatAnswer("4")
 
-    ended_s, ledger, _ = run(model, mission)
-    assert model.most_at_once == 9
+    async def mission(caller: Caller, clock: Clock) -> tuple[list[ChatAnswer], float]:
+        answers = await asyncio.gather(*(caller.ask(question(0, 0, index)) for index in range(9)))
+        return answers, clock.now_s()
+
+    (answers, ended_s), ledger, _ = run(Gathering(), mission)
+    assert [answer.fault for answer in answers] == [None] * 9
     assert ended_s == pytest.approx(max(call.latency_s for call in ledger.calls), abs=1e-9)
-    assert ended_s < sum(call.latency_s for call in ledger.calls) / 2
 
 
 def test_whatever_a_model_throws_is_a_fault() -> None:
@@ -177,22 +187,24 @@ def test_what_came_from_the_cache_then_is_replayed_as_such(tmp_path: Path) -> No
 
 
 def test_the_same_question_asked_twice_at_once_gets_the_answers_in_the_order_of_asking(tmp_path: Path) -> None:
-    waits = iter((0.03, 0.001))
-    words = {0.03: "slow", 0.001: "quick"}
-    said: list[str] = []
+    class SecondFirst(FakeModel):
+        """Answers who asked second before who asked first."""
 
-    def delay_s(_: ChatRequest) -> float:
-        wait = next(waits)
-        said.append(words[wait])
-        return wait
+        async def ask(self, request: ChatRequest) -> ChatAnswer:
+            self.asked.append(request)
+            if len(self.asked) == 1:
+                self.second = asyncio.Event()
+                await self.second.wait()
+                await asyncio.sleep(0.01)
+                return ChatAnswer("to the first")
+            self.second.set()
+            return ChatAnswer("to the second")
 
-    model = FakeModel(delay_s=delay_s)
-    model.rule = lambda _: ChatAnswer(said.pop())  # the quick one ends first
     with TapeRecorder(tmp_path / "tape") as tape:
-        answers, _, _ = run(model, ask(question(), question()), tape=tape)
-    assert [answer.text for answer in answers] == ["slow", "quick"]
-    again, _, _ = run(FakeModel(), ask(question(), question()), tape=TapePlayer(tmp_path / "tape"))
-    assert again == answers
+        answers, ledger, _ = run(SecondFirst(), ask(question(), question()), tape=tape)
+    assert [answer.text for answer in answers] == ["to the first", "to the second"]
+    again, ledger_again, _ = run(FakeModel(), ask(question(), question()), tape=TapePlayer(tmp_path / "tape"))
+    assert (again, ledger_again.calls) == (answers, ledger.calls)
 
 
 @pytest.mark.parametrize(

@@ -67,7 +67,7 @@ def _model(*, found_in_step: int = 99) -> FakeModel:
         }
         return ChatAnswer(texts[request.role], tokens_in=9, usd=0.001)
 
-    waits = {"caption": 0.001, "checker": 0.004, "evaluator": 0.02, "visionary": 0.02}
+    waits = {"caption": 0.001, "checker": 0.004, "evaluator": 0.02 if found_in_step == 99 else 0.3, "visionary": 0.02}
     return FakeModel(rule, delay_s=lambda request: waits[request.role])
 
 
