@@ -227,6 +227,18 @@ def test_a_person_stops_a_mission_that_waits_for_a_call(clock: Clock) -> None:
     stopper.join()
 
 
+def test_a_person_stops_what_is_tried_outside_a_mission() -> None:
+    stopper = threading.Timer(0.05, os.kill, (os.getpid(), signal.SIGINT))
+
+    async def endless() -> None:
+        stopper.start()
+        await asyncio.sleep(3600.0)
+
+    with listening(), pytest.raises(KeyboardInterrupt):
+        run_live(endless)
+    stopper.join()
+
+
 def _python(*arguments: str) -> "subprocess.CompletedProcess[str]":
     return subprocess.run([sys.executable, *arguments], check=False, capture_output=True, text=True, timeout=60)
 

@@ -1,4 +1,4 @@
-"""Answers that were paid for once: an SQLite file that several processes may use at the same time."""
+"""Answers that were paid for once: an SQLite file that several processes of one machine may use at the same time."""
 
 import json
 import os

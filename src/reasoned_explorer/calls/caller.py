@@ -101,21 +101,20 @@ class Caller:
             come.append(await self._asked(asked.request))
             return come[0]
 
-        ended, cancelled = ChatAnswer(usd=None), False
+        ended, answered = ChatAnswer(usd=None), False
         try:
             ended, seconds = await self._clock.live(call)
+            answered = ended.fault is None
         except asyncio.CancelledError:
-            cancelled = True
             # The model may have answered by now, later on the mission's clock: then its cost is known.
             ended = come[0] if come else ended
             self._close(asked, ended, self._since(asked), outcome=Outcome.CANCELLED)
             raise
         except PartError as error:
-            ended = scrubbed(ChatAnswer(fault=str(error), usd=None))
-            return ended, self._since(asked)
+            ended, seconds = scrubbed(ChatAnswer(fault=str(error), usd=None)), self._since(asked)
         finally:
             if self._budget is not None:
-                self._budget.end(ended.usd, model=self.model.name, answered=not cancelled and ended.fault is None)
+                self._budget.end(ended.usd, model=self.model.name, answered=answered)
         return ended, seconds
 
     async def _asked(self, request: ChatRequest) -> ChatAnswer:

@@ -11,10 +11,11 @@ import os
 import threading
 import time
 from collections.abc import Callable, Coroutine
-from concurrent.futures import Future
+from concurrent.futures import CancelledError, Future
 from typing import Any, TypeVar
 
 from reasoned_explorer.model.errors import PartError
+from reasoned_explorer.model.stopping import on_stop, stop_if_asked
 
 T = TypeVar("T")
 
@@ -157,6 +158,10 @@ def run_live(call: Callable[[], Coroutine[Any, Any, T]]) -> T:
     """
     future = begin_live(call, Stopwatch())
     try:
-        return future.result()
+        with on_stop(future.cancel):
+            return future.result()
+    except CancelledError:
+        stop_if_asked()
+        raise
     finally:
         future.cancel()
