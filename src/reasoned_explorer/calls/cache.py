@@ -58,12 +58,12 @@ class AnswerCache:
     """
 
     def __init__(self, path: Path | str, *, sampled: bool = False) -> None:
-        self.path = path_of(path, "cache", SettingsError)
         self.sampled = sampled
         self.trouble: str | None = None
         self._lock = threading.Lock()
         self._pid = 0
         self._open: sqlite3.Connection | None = None
+        self.path = path_of(path, "cache", SettingsError)
         try:
             version = _version(self._connection())
         except sqlite3.DatabaseError as error:
@@ -119,12 +119,19 @@ class AnswerCache:
         return count
 
     def close(self) -> None:
-        """Close the file; it is opened again when it is needed."""
+        """Close the file; it is opened again when it is needed, and closed by itself when nobody has it any more."""
         with self._lock:
-            if self._open is not None and self._pid == os.getpid():
+            if self._open is None:
+                return
+            if self._pid == os.getpid():
                 with suppress(sqlite3.Error):
                     self._open.close()
+            else:
+                _inherited.append(self._open)
             self._open = None
+
+    def __del__(self) -> None:
+        self.close()
 
     def __getstate__(self) -> tuple[str, bool]:
         return str(self.path), self.sampled
