@@ -4,6 +4,7 @@ import asyncio
 import json
 import subprocess
 import sys
+import threading
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from reasoned_explorer.calls.chat import ChatAnswer, ChatRequest, TokenChoice
 from reasoned_explorer.calls.ledger import CallRecord, Ledger
 from reasoned_explorer.calls.tape import TapePlayer, TapeRecorder
 from reasoned_explorer.clock import Clock, MixedClock, RealClock, VirtualClock
+from reasoned_explorer.clock.live_thread import run_live
 from reasoned_explorer.model import SettingsError
 from reasoned_explorer.model.record import MissionEnd
 from tests.calls.fakes import FakeModel, question
@@ -107,6 +109,35 @@ def test_a_cancelled_call_is_ended_and_kept_as_cancelled_with_its_seconds_so_far
     assert imagined.latency_s == pytest.approx(checked.latency_s, abs=1e-9)
     lines = [json.loads(line) for line in (tmp_path / "tape").read_text().splitlines()]
     assert [line["call"]["outcome"] for line in lines[1:-1]] == ["answered", "cancelled"]
+
+
+def test_a_call_that_had_really_ended_before_it_was_cancelled_is_kept_with_its_cost(tmp_path: Path) -> None:
+    answered = threading.Event()
+
+    def rule(_: ChatRequest) -> ChatAnswer:
+        answered.set()
+        return ChatAnswer("too late", tokens_in=7, usd=0.02)
+
+    async def mission(caller: Caller, clock: Clock) -> float:
+        asking = asyncio.ensure_future(caller.ask(question()))
+        await clock.act(0.001)
+        # This program is busy until the answer is there, 0.02 s after the asking, and the live loop has turned to others.
+        answered.wait(30.0)
+        run_live(lambda: asyncio.sleep(0))
+        asking.cancel()
+        await asyncio.gather(asking, return_exceptions=True)
+        return clock.now_s()
+
+    budget = Budget(usd=1.0)
+    with TapeRecorder(tmp_path / "tape") as tape:
+        ended_s, ledger, _ = run(FakeModel(rule, delay_s=lambda _: 0.02), mission, tape=tape, budget=budget)
+    assert ledger.calls == (
+        CallRecord("evaluator", "fake:model", (0, 0, 0), 0.0, 0.001, tokens_in=7, usd=0.02, fault=CANCELLED),
+    )
+    assert budget.spent_usd == 0.02
+    answered.set()
+    again_s, ledger_again, _ = run(FakeModel(), mission, tape=TapePlayer(tmp_path / "tape"))
+    assert (again_s, ledger_again.calls) == (ended_s, ledger.calls)
 
 
 async def _found_while_imagining(caller: Caller, clock: Clock) -> float:
