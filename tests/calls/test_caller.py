@@ -121,7 +121,7 @@ def test_a_call_that_had_really_ended_before_it_was_cancelled_is_kept_with_its_c
     async def mission(caller: Caller, clock: Clock) -> float:
         asking = asyncio.ensure_future(caller.ask(question()))
         await clock.act(0.001)
-        # This program is busy until the answer is there, 0.02 s after the asking, and the live loop has turned to others.
+        # This program is busy until the answer is there, 0.02 s after the asking, and the live loop is at other things.
         answered.wait(30.0)
         run_live(lambda: asyncio.sleep(0))
         asking.cancel()
