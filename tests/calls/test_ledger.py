@@ -19,6 +19,14 @@ def test_totals_add_up_by_role():
     assert totals["checker"].faults == totals["checker"].cached == 1
 
 
+def test_calls_without_a_known_price_are_counted_and_not_taken_for_free():
+    ledger = Ledger()
+    for usd in (0.01, None, 0.0):
+        ledger.add(CallRecord("checker", "m", (0,), 0.0, 0.1, usd=usd))
+    total = ledger.totals()["checker"]
+    assert (total.usd, total.unpriced) == (0.01, 1)
+
+
 def test_what_a_step_added_can_be_had_alone():
     ledger = Ledger()
     ledger.add(CallRecord("checker", "m", (0, 0, 0), 0.0, 0.1))

@@ -9,7 +9,7 @@ from reasoned_explorer.exploration.explorer import Exploration, Explorer, Parts
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Goal, Leg, LegOutcome, PartError, Scene, TrackPoint, Verdict, View
-from reasoned_explorer.model.record import StepRecord
+from reasoned_explorer.model.record import MissionEnd, StepRecord
 from reasoned_explorer.planning import FrontierScore, Plan
 from reasoned_explorer.vehicles import PROFILES, Vehicle, VehicleProfile
 
@@ -109,18 +109,20 @@ class Plane:
     """The parts, and what came of running them."""
 
     settings: ExplorerSettings = field(default_factory=lambda: ExplorerSettings(t_max_s=300.0))
-    clock: VirtualClock = field(default_factory=VirtualClock)
+    clock: Clock = field(default_factory=VirtualClock)
     steps: list[StepRecord] = field(default_factory=list)
     on_step: Callable[[StepRecord], None] = lambda step: None
 
     def __post_init__(self) -> None:
+        self.ledger = Ledger()
+        self.must_end: Callable[[], tuple[MissionEnd, str] | None] = lambda: None
         self.vehicle = FakeVehicle(self.clock)
         self.captioner = FakeCaptioner(self.clock)
         self.planner = FakePlanner(self.clock)
         self.checker = FakeChecker(self.clock)
 
     def run(self) -> Exploration:
-        parts = Parts(self.vehicle, self.captioner, self.planner, self.checker, self.clock, Ledger())
+        parts = Parts(self.vehicle, self.captioner, self.planner, self.checker, self.clock, self.ledger, self.must_end)
 
         def keep(step: StepRecord) -> None:
             self.steps.append(step)

@@ -16,7 +16,7 @@ class CallRecord:
         latency_s: Seconds that it is charged.
         tokens_in: Tokens that were sent; 0 for minds that have none.
         tokens_out: Tokens that came back, likewise.
-        usd: US dollars.
+        usd: US dollars, or None where the price is not known.
         cached: Whether the answer came from a store and not from the model; its seconds are the original ones.
         retries: How often it was asked again before it was answered or given up.
         fault: Why there is no answer, or None.
@@ -29,7 +29,7 @@ class CallRecord:
     latency_s: float
     tokens_in: int = 0
     tokens_out: int = 0
-    usd: float = 0.0
+    usd: float | None = 0.0
     cached: bool = False
     retries: int = 0
     fault: str | None = None
@@ -47,7 +47,8 @@ class RoleTotals:
         latency_s: Sum of the calls' seconds, more than the time waited where calls ran at the same time.
         tokens_in: Tokens sent.
         tokens_out: Tokens received.
-        usd: US dollars.
+        usd: US dollars of all calls whose price is known.
+        unpriced: How many calls have no known price.
     """
 
     calls: int = 0
@@ -58,10 +59,14 @@ class RoleTotals:
     tokens_in: int = 0
     tokens_out: int = 0
     usd: float = 0.0
+    unpriced: int = 0
 
 
 class Ledger:
-    """All calls of one mission, in the order in which they were asked."""
+    """All calls of one mission, in the order in which they were written down.
+
+    Modelled calls are written down when they are asked, real ones when they end, by the mission's clock.
+    """
 
     def __init__(self) -> None:
         self._calls: list[CallRecord] = []
@@ -100,5 +105,6 @@ class Ledger:
             latency_s=sum(call.latency_s for call in calls),
             tokens_in=sum(call.tokens_in for call in calls),
             tokens_out=sum(call.tokens_out for call in calls),
-            usd=sum(call.usd for call in calls),
+            usd=sum(call.usd for call in calls if call.usd is not None),
+            unpriced=sum(call.usd is None for call in calls),
         )

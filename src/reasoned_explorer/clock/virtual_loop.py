@@ -12,15 +12,18 @@ from collections.abc import Mapping
 from typing import Any
 
 
-class _NeverWaiting(selectors.BaseSelector):
+class NeverWaiting(selectors.BaseSelector):
+    """A selector that moves the time ``now_s`` on instead of waiting."""
+
     def __init__(self) -> None:
         self.now_s = 0.0
         self._real = selectors.DefaultSelector()
 
     def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
+        """Return what is ready; where nothing is, let the time be as much later as the loop would have slept."""
         if timeout is None:
             # Nothing is scheduled: only a thread or a signal can bring something, and for that one has to wait.
-            return self._real.select(None)
+            return self.wait(None)
         if timeout <= 0.0:
             return []  # something is ready to run: the system need not be asked
         ready = self._real.select(0)
@@ -28,27 +31,40 @@ class _NeverWaiting(selectors.BaseSelector):
             self.now_s += max(0.0, timeout)
         return ready
 
+    def wait(self, real_s: float | None) -> list[tuple[selectors.SelectorKey, int]]:
+        """Wait for something to be ready, at most so many real seconds."""
+        return self._real.select(real_s)
+
     def register(self, fileobj: Any, events: int, data: Any = None) -> selectors.SelectorKey:
+        """Watch a file."""
         return self._real.register(fileobj, events, data)
 
     def unregister(self, fileobj: Any) -> selectors.SelectorKey:
+        """Watch a file no longer."""
         return self._real.unregister(fileobj)
 
     def modify(self, fileobj: Any, events: int, data: Any = None) -> selectors.SelectorKey:
+        """Watch for something else."""
         return self._real.modify(fileobj, events, data)
 
     def close(self) -> None:
+        """Release what the system holds."""
         self._real.close()
 
     def get_map(self) -> Mapping[Any, selectors.SelectorKey]:
+        """Return what is watched."""
         return self._real.get_map()
 
 
 class VirtualEventLoop(asyncio.SelectorEventLoop):
-    """The standard loop in virtual time, which starts at 0. Real sockets and threads must not be awaited in it."""
+    """The standard loop in virtual time, which starts at 0. Real sockets and threads must not be awaited in it.
 
-    def __init__(self) -> None:
-        self._virtual = _NeverWaiting()
+    Args:
+        selector: What moves the time on.
+    """
+
+    def __init__(self, selector: NeverWaiting | None = None) -> None:
+        self._virtual = NeverWaiting() if selector is None else selector
         super().__init__(self._virtual)
 
     def time(self) -> float:

@@ -34,6 +34,8 @@ class Parts:
         checker: Notices the goal.
         clock: Mission time.
         ledger: Where the parts write their calls.
+        must_end: Tells how the mission must end now, and why, where no model can be asked any more: the run's budget is
+            spent, say. Asked after each look.
     """
 
     vehicle: Vehicle
@@ -42,6 +44,7 @@ class Parts:
     checker: GoalChecker
     clock: Clock
     ledger: Ledger
+    must_end: Callable[[], tuple[MissionEnd, str] | None] = lambda: None
 
 
 @dataclass(slots=True)
@@ -157,9 +160,9 @@ class Explorer:
     async def _advance(self, goal: Goal, step: StepDraft) -> tuple[MissionEnd, str] | None:
         """Make one step; return how the mission ended if it did."""
         if self._look_next:
-            found = await self._look_and_think(goal, step)
-            if found is not None:
-                return found
+            ended = await self._look_and_think(goal, step) or self.parts.must_end()
+            if ended is not None:
+                return ended
         self._look_next = True
         if self._time_is_over():
             return self._time_over()

@@ -151,7 +151,7 @@ class LegRecord:
 
 @dataclass(frozen=True, slots=True)
 class CallKept:
-    """One call of a model: who, when, how long, what it cost."""
+    """One call of a model: who, when, how long, what it cost (``usd`` is None where the price is not known)."""
 
     role: str
     model: str
@@ -160,7 +160,7 @@ class CallKept:
     latency_s: float
     tokens_in: int = 0
     tokens_out: int = 0
-    usd: float = 0.0
+    usd: float | None = 0.0
     cached: bool = False
     retries: int = 0
     fault: str | None = None

@@ -190,7 +190,7 @@ def _row_of(plan: BenchPlan, task: Task, item: SplitEpisode, result: MissionResu
         calls=len(calls),
         tokens_in=sum(call.tokens_in for call in calls),
         tokens_out=sum(call.tokens_out for call in calls),
-        usd=round(math.fsum(call.usd for call in calls), 9),
+        usd=round(math.fsum(call.usd or 0.0 for call in calls), 9),
         evaluator_sum=round(math.fsum(scores), 4),
         evaluator_count=len(scores),
         small_collisions=small,
