@@ -159,7 +159,7 @@ def read_completion(body: bytes, *, wants_structure: bool = False) -> Reading:
         return spent(fault=f"wrong types: {where}: {first['msg']}", again=True)
     name = completion.model or ""
     if not completion.choices:
-        return spent(fault="empty: no choices", again=True, model=name)
+        return spent(fault="wrong types: choices: there is none", again=True, model=name)
     choice = completion.choices[0]
     text = (choice.message.content or "").strip()
     fault = _without_answer(choice, text, wants_structure=wants_structure)
