@@ -147,12 +147,14 @@ class Received:
         headers: With names in lower case.
         at_s: Monotonic seconds.
         told: What was done with it.
+        port: Of the connection that it came over.
     """
 
     body: Mapping[str, Any]
     headers: Mapping[str, str]
     at_s: float
     told: str
+    port: int
 
 
 @dataclass(eq=False)
@@ -238,7 +240,8 @@ class StubServer:
         wait_s = limit.admit() if limit is not None else None
         if wait_s is not None:
             word = "turned away"
-        self.received.append(Received(body, headers, at_s, word))
+        port = request.transport.get_extra_info("peername")[1] if request.transport is not None else 0
+        self.received.append(Received(body, headers, at_s, word, port))
         told = limit.headers() if limit is not None and self.behaviour.tells_limit else {}
         if wait_s is not None:
             return self._turned_away(wait_s, told)

@@ -28,7 +28,12 @@ SCHEMA = {
     "required": ["level", "is_blocked"],
     "additionalProperties": False,
 }
-QUICK = AskingSettings(try_s=0.3, back_off_s=0.001)
+QUICK = AskingSettings(back_off_s=0.001)
+
+
+def settings_for(word: str, **options: Any) -> AskingSettings:
+    """Wait for what hangs only: a busy machine must not time out what would have been answered."""
+    return AskingSettings(try_s=1.0 if word == "hang" else 60.0, back_off_s=0.001, **options)
 
 
 def question(number: int = 0, **options: Any) -> ChatRequest:
@@ -90,7 +95,7 @@ def test_structured_answers_and_log_probabilities() -> None:
 )
 def test_what_passes_is_tried_again(word: str) -> None:
     with StubServer(Behaviour(script=(word, word))) as server:
-        answer = ask(server)
+        answer = ask(server, settings=settings_for(word))
     assert answer.fault is None
     assert answer.text
     assert answer.retries == 2
@@ -118,9 +123,8 @@ def test_what_passes_is_tried_again(word: str) -> None:
     ],
 )
 def test_what_stays_is_a_fault_of_its_own_kind(word: str, fault: str, asked: int) -> None:
-    settings = AskingSettings(try_s=0.3, tries=3, back_off_s=0.001)
     with StubServer(Behaviour(script=(word,) * 6)) as server:
-        answer = ask(server, settings=settings)
+        answer = ask(server, settings=settings_for(word, tries=3))
     assert answer.fault is not None
     assert answer.fault.startswith(fault)
     assert answer.text == ""
@@ -202,10 +206,31 @@ def gathered(model: OpenAIModel, count: int) -> list[ChatAnswer]:
     return asyncio.run(all_at_once())
 
 
-def test_calls_go_at_the_same_time_over_connections_that_are_kept() -> None:
-    with StubServer(Behaviour(latency_s=0.2)) as server:
+def test_calls_go_at_the_same_time() -> None:
+    with StubServer(Behaviour(latency_s=0.5)) as server:
         assert all(answer.fault is None for answer in gathered(model_at(server), 40))
     assert server.most_at_once == 40
+
+
+def test_models_of_an_endpoint_share_a_connection_that_is_kept() -> None:
+    async def one_by_one(server: StubServer) -> None:
+        for number in range(6):
+            await openai_model(f"openai:model-{number % 2}", base_url=server.base_url).ask(question(number))
+
+    with StubServer() as server:
+        asyncio.run(one_by_one(server))
+    assert len({each.port for each in server.received}) == 1
+
+
+def test_everybody_who_asks_a_model_waits_in_the_same_line() -> None:
+    settings = AskingSettings(limits=Limits(first_at_once=1, most_at_once=1))
+
+    async def four(server: StubServer) -> None:
+        await asyncio.gather(*(model_at(server, settings).ask(question(number)) for number in range(4)))
+
+    with StubServer(Behaviour(latency_s=0.05)) as server:
+        asyncio.run(four(server))
+    assert server.most_at_once == 1
 
 
 def test_a_known_limit_is_met_without_being_turned_away() -> None:
@@ -224,9 +249,8 @@ def test_who_is_turned_away_comes_back_until_it_is_served(retry_after: str) -> N
 
 
 def test_one_call_in_five_goes_wrong_and_few_are_lost() -> None:
-    settings = AskingSettings(try_s=0.5, back_off_s=0.001)
     with StubServer(Behaviour(fault_share=0.2)) as server:
-        answers = gathered(model_at(server, settings), 300)
+        answers = gathered(model_at(server, settings_for("hang")), 300)
         faults = {answer.fault.split(":")[0] for answer in answers if answer.fault is not None}
         lost = sum(answer.fault is not None for answer in answers)
         assert set(server.told) == {"ok", *FAULTS}
