@@ -17,9 +17,8 @@ from enum import Enum, auto
 from reasoned_explorer.calls.rate_headers import rate_state, retry_after_s
 
 _BURST_SHARE = 0.1  # of a minute's worth may go at once where nobody tells how much may
-_CREEP = 0.01  # the measured rate is raised by this share with each grant, to find out whether more is granted
-_CREEP_AFTER = 15  # grants since the last refusal until it is raised by all of it
-_SAVED = 0.8  # of what the measured rate would have granted while the gate was closed goes when it opens
+_CREEP = 0.005  # the measured rate is raised by this share with each grant, to find out whether more is granted
+_CREEP_AFTER = 30  # grants since the last refusal until it is raised by all of it
 _LONGEST_BACK_OFF_S = 30.0
 _FIRST_BACK_OFF_S = 0.5
 _JAM_MEMORY_S = 30.0
@@ -120,10 +119,10 @@ class _Bucket:
         self.spent += amount
 
     def measured(self, per_s: float, from_s: float, *, after_s: float = 0.0) -> None:
-        """Go on at a measured rate from some moment on, at first with most of what a closed gate has saved up."""
+        """Go on at a measured rate from some moment on, at first with what a closed gate has saved up."""
         self.measured_per_s = per_s
         if not math.isinf(per_s):
-            self.saved = max(1.0, _SAVED * per_s * after_s)
+            self.saved = max(1.0, per_s * after_s)
             self.level, self.at_s = self.saved, from_s
 
     def told(self, headers: Mapping[str, str], what: str, sent_s: float, spent_then: float, now_s: float) -> None:
@@ -274,8 +273,9 @@ class Pacer:
             self._jam = _Jam(jam.number + 1, now_s)
         elif ticket.jam == jam.number:
             jam.refused += 1.0
-            span_s = max(1e-3, self._closed_until_s - jam.since_s)
-            per_s = (max(0.0, jam.granted - jam.refused) + 1.0) / span_s  # one more when the gate opens
+            # Nothing was left when the jam began and nothing is now: what came through is what was granted meanwhile.
+            span_s = max(1e-3, now_s - jam.since_s)
+            per_s = max(1.0, jam.granted - jam.refused) / span_s
             jam.smooth = 0
             gate_s = self._closed_until_s - self._closed_at_s
             self._requests.measured(per_s, self._closed_until_s, after_s=gate_s)
