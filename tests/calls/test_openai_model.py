@@ -4,6 +4,7 @@ import asyncio
 import gc
 import json
 import logging
+import subprocess
 import sys
 from collections.abc import Coroutine
 from typing import Any
@@ -149,6 +150,39 @@ def test_a_server_that_is_not_there_is_a_fault() -> None:
     assert answer.retries == QUICK.tries - 1
 
 
+@pytest.mark.parametrize(
+    "said",
+    [
+        b"what is this\r\n\r\n",
+        b"HTTP/1.1 999999 OK\r\n\r\n",
+        b"HTTP/1.1 200 OK\r\ntransfer-encoding: chunked\r\n\r\nzzz\r\n",
+        b"HTTP/1.1 200 OK\r\ncontent-length: 5\r\ncontent-encoding: gzip\r\n\r\nhello",
+        b"HTTP/1.1 200 OK\r\ncontent-length: 2\r\n\r\n\xff\xfe",
+        b"HTTP/1.1 200 OK\r\ncontent-length: nine\r\n\r\n",
+        b"HTTP/1.1 200 OK\r\nx: " + b"y" * 100_000 + b"\r\n\r\n",
+        b"",
+    ],
+)
+def test_what_is_not_even_http_is_a_fault(said: bytes) -> None:
+    async def talk() -> ChatAnswer:
+        async def answer(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+            await reader.readuntil(b"}")
+            writer.write(said)
+            await writer.drain()
+            writer.close()
+
+        server = await asyncio.start_server(answer, "127.0.0.1", 0)
+        async with server:
+            port = server.sockets[0].getsockname()[1]
+            settings = AskingSettings(try_s=5.0, tries=2, back_off_s=0.001)
+            return await OpenAIModel("tiny", Endpoint(f"http://127.0.0.1:{port}/v1"), settings=settings).ask(question())
+
+    answer = asyncio.run(talk())
+    assert answer.fault is not None
+    assert answer.fault.split(":")[0] in {"connection", "malformed"}
+    assert answer.retries == 1
+
+
 def test_tries_do_not_outlast_the_deadline() -> None:
     settings = AskingSettings(deadline_s=0.5, try_s=0.2, tries=1000, back_off_s=0.001)
     with StubServer(Behaviour(script=("hang",) * 1000)) as server:
@@ -290,6 +324,22 @@ def test_clients_end_with_their_event_loop(caplog: pytest.LogCaptureFixture) -> 
         for _ in range(3):
             assert run_with_warnings_as_errors(model.ask(question())).fault is None
     assert "Unclosed" not in caplog.text
+
+
+def test_a_program_that_ends_says_nothing_of_what_it_leaves_open() -> None:
+    program = """
+import asyncio, sys, threading
+from reasoned_explorer.calls.chat import ChatRequest
+from reasoned_explorer.calls.openai_model import openai_model
+loop = asyncio.new_event_loop()
+threading.Thread(target=loop.run_forever, daemon=True).start()
+asked = openai_model("openai:tiny", base_url=sys.argv[1]).ask(ChatRequest("caption", (), "", "What is there?", ""))
+print(asyncio.run_coroutine_threadsafe(asked, loop).result(60.0).fault)
+"""
+    with StubServer() as server:
+        command = [sys.executable, "-c", program, server.base_url]
+        ended = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert (ended.returncode, ended.stdout.strip(), ended.stderr) == (0, "None", "")
 
 
 def test_the_key_is_sent_and_stands_nowhere_else(

@@ -40,7 +40,7 @@ class _Message(_Wire):
 class _Choice(_Wire):
     message: _Message
     finish_reason: str | None = None
-    logprobs: _Places | None = None
+    logprobs: Any = None  # read on its own: an answer does not get worse by probabilities that cannot be read
 
 
 class _Usage(_Wire):
@@ -50,7 +50,7 @@ class _Usage(_Wire):
 
 class _Completion(_Wire):
     choices: list[_Choice]
-    model: str | None = None
+    model: Any = None
 
 
 class _UsageOnly(_Wire):
@@ -112,7 +112,11 @@ def parameters(
         content = [{"type": "text", "text": request.user}, *pictures]
     sent: dict[str, Any] = {
         "model": model,
-        "messages": [{"role": "system", "content": request.system}, {"role": "user", "content": content}],
+        # Some models know no system, and are told about it by leaving it empty.
+        "messages": [
+            *([{"role": "system", "content": request.system}] if request.system else []),
+            {"role": "user", "content": content},
+        ],
         length_name: request.max_tokens,
         "temperature": request.temperature,
         "seed": request.seed,
@@ -157,7 +161,7 @@ def read_completion(body: bytes, *, wants_structure: bool = False) -> Reading:
             return spent(fault=f"malformed: the answer is no JSON: {start!r}", again=True)
         where = ".".join(map(str, first["loc"])) or "the whole"
         return spent(fault=f"wrong types: {where}: {first['msg']}", again=True)
-    name = completion.model or ""
+    name = completion.model if isinstance(completion.model, str) else ""
     if not completion.choices:
         return spent(fault="wrong types: choices: there is none", again=True, model=name)
     choice = completion.choices[0]
@@ -178,10 +182,12 @@ def _without_answer(choice: _Choice, text: str, *, wants_structure: bool) -> str
     return None if text else "empty: no text"
 
 
-def _places(told: _Places | None) -> tuple[TokenChoice, ...]:
-    if told is None or told.content is None:
+def _places(told: object) -> tuple[TokenChoice, ...]:
+    try:
+        content = _Places.model_validate(told).content if told is not None else None
+    except ValidationError:
         return ()
     return tuple(
         TokenChoice(place.token, tuple((each.token, each.logprob) for each in place.top_logprobs or ()))
-        for place in told.content
+        for place in content or ()
     )

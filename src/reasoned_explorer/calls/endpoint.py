@@ -18,7 +18,7 @@ OPENAI_KEY = "OPENAI_API_KEY"
 Structure = Literal["json_schema", "json_object", "none"]
 """How an answer's form is asked for: by its schema, as any JSON object, or in words only."""
 
-_SECRETS = re.compile(r"\b(?:sk|sess|rk|pk|gsk|xai|hf|AIza)[-_][A-Za-z0-9*._-]{5,}|(?i:bearer)\s+\S+")
+_SECRETS = re.compile(r"\b(?:(?:sk|sess|rk|pk|gsk|xai|hf)[-_]|AIza)[A-Za-z0-9*._-]{5,}|(?i:bearer)\s+\S+")
 
 
 @dataclass(frozen=True, slots=True)

@@ -159,7 +159,8 @@ class OpenAIModel:
             await asyncio.sleep(wait_s)
 
     async def _try(self, connection: Connection, request: ChatRequest, within_s: float) -> _End:
-        from httpx2 import Response
+        from aiohttp import ClientError
+        from httpx2 import HTTPError, Response
         from openai import APIConnectionError, APIStatusError, OpenAIError
 
         sent = parameters(
@@ -184,8 +185,10 @@ class OpenAIModel:
         except APIConnectionError as error:
             cause = _innermost(error)
             return _End(Sign.NEUTRAL, self._fault("connection", type(cause).__name__, str(cause)), again=True)
-        except (OpenAIError, ValueError) as error:
-            return _End(Sign.NEUTRAL, self._fault("malformed", type(error).__name__, str(error)), again=True)
+        except (OpenAIError, ClientError, HTTPError, OSError, ValueError) as error:
+            # What came is not even HTTP; the SDK lets through what its backend says of it.
+            cause = _innermost(error)
+            return _End(Sign.NEUTRAL, self._fault("malformed", type(cause).__name__, str(cause)), again=True)
 
     def _refusal(self, error: Any) -> _End:
         status, headers = int(error.status_code), error.response.headers

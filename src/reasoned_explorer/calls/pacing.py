@@ -275,7 +275,7 @@ class Pacer:
             jam.refused += 1.0
             # Nothing was left when the jam began and nothing is now: what came through is what was granted meanwhile.
             span_s = max(1e-3, now_s - jam.since_s)
-            per_s = max(1.0, jam.granted - jam.refused) / span_s
+            per_s = max(1.0, jam.granted - jam.refused + 1.0) / span_s
             jam.smooth = 0
             gate_s = self._closed_until_s - self._closed_at_s
             self._requests.measured(per_s, self._closed_until_s, after_s=gate_s)
