@@ -95,7 +95,8 @@ def test_a_finding_is_read_however_it_is_said(answer: str, finding: Finding):
         ("Yes, there is one, but it is in the distance.", NO_FOUND), ("Yes and no", NO_FOUND),
         ("There might be one.", NO_FOUND), ("yesterday", NO_FOUND), ("FOUND: yes or no", NOT_YES_OR_NO),
         ("FOUND: unclear", NOT_YES_OR_NO), ("FOUND: yes\nFOUND: no", SEVERAL),
-        ('{"found": "true|false"}', NOT_YES_OR_NO), ('{"found": 0.7}', NOT_YES_OR_NO), ('{"found": true', CUT_OFF), ("true false", NO_FOUND), ("found", NO_FOUND),
+        ('{"found": "true|false"}', NOT_YES_OR_NO), ('{"found": 0.7}', NOT_YES_OR_NO),
+        ('{"found": true', CUT_OFF), ("true false", NO_FOUND), ("found", NO_FOUND),
     ],
 )  # fmt: skip
 def test_found_is_never_guessed(answer: str, reason: str):

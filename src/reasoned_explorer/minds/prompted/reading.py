@@ -38,7 +38,7 @@ _DECLINED = re.compile(
     r"\W*(?:i(?:['’]m| am) (?:sorry|unable|not able)|sorry\b|i (?:can ?not|can['’]t|won['’]t|must decline)|as an ai\b)",
     re.IGNORECASE,
 )
-_LABEL = r"(?:^|(?<=[\s*_`#(>.,;\"'-]))(?:{names})[\"'*_`)]*\s*[:=]\s*([^\n]*)"
+_LABEL = r"(?:^|(?<=[\s*_`#({{>.,;\"'-]))(?:{names})[\"'*_`)]*\s*[:=]\s*([^\n]*)"
 _LEVEL_NAMES = ("level", "score", "rating")
 _THIS = r"(?:it|this|the scene|this scene)"
 _PROSE_LEVEL = re.compile(
@@ -61,6 +61,8 @@ _BARE_YES_NO = re.compile(
 #: After a "yes" with one of these it is not clear what was meant.
 _BUT = re.compile(r"\b(?:but|however|although|though|not|no|unless|if)\b|n['’]t\b", re.IGNORECASE)
 _PREAMBLE = re.compile(r"^[^\n.]{0,160}:\s*\n+", re.IGNORECASE)
+#: An object in another way of writing than JSON's.
+_SCENE_WRITTEN = re.compile(r"\{\s*['\"]?scene['\"]?\s*:\s*(['\"])(.*)\1\s*,?\s*\}", re.IGNORECASE | re.DOTALL)
 _SCENE_LABEL = re.compile(r"^\W*(?:imagined |next )?scene\W{0,4}:\W{0,4}", re.IGNORECASE)
 
 
@@ -153,6 +155,8 @@ def read_scene(answer: str, shown: Sequence[str]) -> str | Unreadable:
     scenes = [found["scene"] for found in _objects_with(text, "scene", ("scene",)) if isinstance(found["scene"], str)]
     if len(set(scenes)) > 1:
         return Unreadable(SEVERAL)
+    if not scenes and (written := _SCENE_WRITTEN.fullmatch(text)):
+        scenes = [written[2]]
     if not scenes:
         if text.startswith("{"):
             return Unreadable(CUT_OFF if text.count("{") > text.count("}") else NO_SCENE)
