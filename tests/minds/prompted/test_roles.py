@@ -88,15 +88,20 @@ def test_a_second_answer_that_is_understood_counts():
     assert (minds.tallies["evaluator"].asked_again, minds.tallies["evaluator"].missing) == (1, 0)
 
 
-@pytest.mark.parametrize(
-    ("fault", "times"),
-    [("truncated: 60 tokens", 2), ("empty answer", 2), ("timed out after 30 s", 1), ("refused: content filter", 1)],
-)
-def test_a_fault_of_the_way_there_is_not_asked_again_here(fault: str, times: int):
+@pytest.mark.parametrize("fault", ["timeout: after 30 s", "refused: I cannot", "empty: no text (asked 3 times)"])
+def test_a_fault_of_the_way_there_is_not_asked_again_here(fault: str):
     fake = Fake(lambda request: ChatAnswer(fault=fault))
     (assessment,) = run(PromptedMinds(fake).evaluate(GOAL, [scene(WITH)]))
     assert (assessment.level_probabilities, assessment.fault) == (None, fault)
-    assert len(fake.asked) == times
+    assert len(fake.asked) == 1
+
+
+def test_an_answer_that_was_cut_off_is_given_more_room():
+    fake = Fake(in_turn([ChatAnswer(fault="cut off: the tokens that were allowed did not do"), "LEVEL: 3"]))
+    (assessment,) = run(PromptedMinds(fake).evaluate(GOAL, [scene(WITH)]))
+    assert assessment.score == 3.0
+    first, second = fake.asked
+    assert second.max_tokens == 2 * first.max_tokens
 
 
 def test_scenes_without_a_description_are_not_asked_about():

@@ -17,6 +17,7 @@ from reasoned_explorer.minds.context import Minds
 from reasoned_explorer.minds.prompted.chances import level_chances, yes_chance
 from reasoned_explorer.minds.prompted.prompt import ROLES, Form, Prompt, load_prompt
 from reasoned_explorer.minds.prompted.reading import (
+    CUT_OFF,
     Finding,
     Judgement,
     Unreadable,
@@ -33,8 +34,8 @@ Said = TypeVar("Said", Judgement, Finding, str)
 #: So many entries of a scene's key say which view it belongs to: step, look, index.
 _VIEW_KEY = 3
 _LARGEST_SEED = 2**31 - 1
-#: Faults that begin with one of these are about what was answered, not about the way there: asking once more may help.
-ASKED_AGAIN_AFTER = ("empty", "truncated", "cut off", "malformed", "wrong type", "not understood")
+#: A fault that begins with this is about the length of the answer: asked again, it may be twice as long.
+_CUT_OFF = "cut off"
 NO_DESCRIPTION = "the scene has no description"
 
 
@@ -188,8 +189,11 @@ class PromptedMinds:
         said, answer = _understood(await self.caller.ask(request), read, shown)
         if isinstance(said, Unreadable):
             tally.asked_again += 1
-            again = self._prompts[role].asked(data, again=said.reason)
-            said, answer = _understood(await self.caller.ask(replace(request, user=again)), read, shown)
+            room = 2 if said.reason == CUT_OFF else 1
+            again = replace(
+                request, user=self._prompts[role].asked(data, again=said.reason), max_tokens=room * request.max_tokens
+            )
+            said, answer = _understood(await self.caller.ask(again), read, shown)
         if said is None or isinstance(said, Unreadable):
             tally.missing += 1
             return None, answer
@@ -249,8 +253,8 @@ def _understood(
 ) -> tuple[Said | Unreadable | None, ChatAnswer]:
     """Return what an answer says, `Unreadable` where asking again may help, None where it would not."""
     if answer.fault is not None:
-        worth_asking = answer.fault.casefold().startswith(ASKED_AGAIN_AFTER)
-        return Unreadable("it did not come through whole") if worth_asking else None, answer
+        # All others are about the way there, where they were tried again already, or stay what they are.
+        return Unreadable(CUT_OFF) if answer.fault.startswith(_CUT_OFF) else None, answer
     said = read(answer.text, shown)
     if isinstance(said, Unreadable):
         return said, replace(answer, fault=f"not understood: {said.reason}")
