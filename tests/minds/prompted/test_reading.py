@@ -48,6 +48,7 @@ def test_a_level_is_read_however_it_is_said(answer: str, level: float):
         ("LEVEL: 4/10", NO_LEVEL), ("LEVEL: 1|2|3|4|5", NO_LEVEL), ("LEVEL: low to high", NO_LEVEL),
         ("LEVEL: high-ish", NO_LEVEL), ("LEVEL: not likely", NO_LEVEL), ("LEVEL: 4th", NO_LEVEL),
         ('{"level": null}', NO_LEVEL), ('{"level": 1e400}', NO_LEVEL), ('{"level": Infinity}', NO_LEVEL),
+        ('{"level": 1' + "0" * 1000 + "}", NO_LEVEL),
         ("LEVEL: 3\nLEVEL: 4", SEVERAL), ("Level 3 is usual, but I rate it 4.", SEVERAL),
         ('{"level": 2}\n{"level": 4}', SEVERAL), ('{"level": 2, "level": 4}', SEVERAL),
         ("BLOCKED: perhaps\nLEVEL: 3", NOT_YES_OR_NO), ('{"level": 3, "blocked": "yes/no"}', NOT_YES_OR_NO),
@@ -149,6 +150,6 @@ def test_numbers_of_other_kinds_are_not_taken_for_levels_or_shares():
     assert [values.level_in(value) for value in (1, 5.0, 0, 5.01, float("nan"), True, None, [3], "5 stars")] == [
         1.0, 5.0, None, None, None, None, None, None, 5.0,
     ]  # fmt: skip
-    assert [values.share_in(value) for value in (0, 1, 100, -0.1, 101, float("inf"), True, "90%", "1 %", "0.5-1")] == [
+    assert [values.share_in(value) for value in (0, 1, 100, -0.1, 101, 10**400, True, "90%", "1 %", "0.5-1")] == [
         0.0, 1.0, 1.0, None, None, None, None, 0.9, 0.01, None,
     ]  # fmt: skip

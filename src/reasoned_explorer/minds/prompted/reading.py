@@ -24,15 +24,15 @@ NO_SCENE = "it described no scene"
 SEVERAL = "it said several things at once"
 NOT_YES_OR_NO = "it said something other than yes or no"
 
-_LONGEST_ANSWER = 20_000
-_MOST_OBJECTS = 32
+#: Of an answer, thoughts left out, so much is read, and so many statements in it.
+_LONGEST_ANSWER = 4000
+_MOST_STATEMENTS = 32
 _LONGEST_SCENE_WORDS = 120
 _SHORTEST_SCENE_WORDS = 4
 #: A text this long may be cut out of an answer that holds it; shorter ones may be in it by chance.
 _SHORTEST_ECHO_WORDS, _SHORTEST_ECHO = 3, 12
-_THOUGHT = re.compile(r"<think(?:ing)?>.*?</think(?:ing)?>", re.DOTALL | re.IGNORECASE)
-_OPEN_THOUGHT = re.compile(r"<think(?:ing)?>", re.IGNORECASE)
-_CODE_FENCE = re.compile(r"^\s*```[\w-]*\s*$", re.MULTILINE)
+_OPEN_THOUGHT, _THOUGHT_OVER = re.compile(r"<think(?:ing)?>", re.IGNORECASE), re.compile(r"</think(?:ing)?>", re.I)
+_CODE_FENCE = re.compile(r"^[ \t]*```[\w-]*[ \t]*$", re.MULTILINE)
 _TRAILING_COMMA = re.compile(r",(\s*[}\]])")
 _DECLINED = re.compile(
     r"\W*(?:i(?:['’]m| am) (?:sorry|unable|not able)|sorry\b|i (?:can ?not|can['’]t|won['’]t|must decline)|as an ai\b)",
@@ -171,7 +171,8 @@ def read_scene(answer: str, shown: Sequence[str]) -> str | Unreadable:
 
 def _unwrapped(answer: str) -> str | Unreadable:
     """Return an answer without thoughts and code fences, in the digits 0 to 9."""
-    text = _THOUGHT.sub("", latin_digits(answer[:_LONGEST_ANSWER]))
+    # Some servers leave out the mark that a thought begins with: what counts comes after the last one that ends.
+    text = latin_digits(_THOUGHT_OVER.split(answer)[-1][:_LONGEST_ANSWER])
     if has_mark(text):
         return Unreadable(REPEATED)
     if _OPEN_THOUGHT.search(text):
@@ -209,8 +210,9 @@ def _labelled(text: str, names: Iterable[str]) -> list[str]:
 
 def _overlapping(pattern: re.Pattern[str], text: str) -> list[re.Match[str]]:
     """Return the matches of a pattern, those too that begin within the value of another."""
-    found, place = [], 0
-    while match := pattern.search(text, place):
+    found: list[re.Match[str]] = []
+    place = 0
+    while len(found) < _MOST_STATEMENTS and (match := pattern.search(text, place)):
         found.append(match)
         place = match.start(1) if match.start(1) > place else match.end() + 1
     return found
@@ -240,7 +242,7 @@ def _holders(value: object, depth: int = 0) -> list[dict[Any, Any]]:
 def _objects(text: str) -> list[object]:
     found: list[object] = []
     place = text.find("{")
-    for _ in range(_MOST_OBJECTS):
+    for _ in range(_MOST_STATEMENTS):
         if place < 0:
             break
         value, end = _object_at(text, place)

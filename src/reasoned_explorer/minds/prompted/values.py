@@ -1,6 +1,5 @@
 """Levels, yes or no, and shares, as models write them: as numbers, words, other scripts' digits. None where unclear."""
 
-import math
 import re
 import unicodedata
 
@@ -95,7 +94,6 @@ def share_in(value: object) -> float | None:
         if number is None or _RANGE.match(number[2]):
             return None
         value, percent = float(number[1].replace(",", ".")), number[2].lstrip().startswith("%")
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value <= 100:  # NaN is outside, too
         return None
-    share = value / 100 if percent or value > 1 else float(value)
-    return share if 0 <= share <= 1 else None
+    return value / 100 if percent or value > 1 else float(value)
