@@ -71,6 +71,9 @@ def test_a_server_that_answers_and_ignores_what_it_is_asked_for_can_do_nothing_o
 
 
 def test_each_ability_is_found_alone():
+    assert [probed(Server(*able)).structure for able in (("json_schema",), ("json_object",), ())] == [
+        "json_schema", "json_object", "none",
+    ]  # fmt: skip
     assert probed(Server("json_object")).json_object
     assert not probed(Server("json_object")).json_schema
     assert probed(Server("logprobs")).top_logprobs == 3

@@ -11,6 +11,7 @@ import math
 import statistics
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal
 
 from PIL import Image
 
@@ -62,6 +63,11 @@ class Abilities:
     def answers(self) -> bool:
         """Whether it answered at all."""
         return self.latency_s is not None
+
+    @property
+    def structure(self) -> Literal["json_schema", "json_object", "none"]:
+        """How the form of an answer is best asked for."""
+        return "json_schema" if self.json_schema else "json_object" if self.json_object else "none"
 
 
 class _Probe:

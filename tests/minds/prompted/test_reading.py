@@ -1,6 +1,11 @@
+import json
+
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from reasoned_explorer.minds.prompted import reading, values
+from reasoned_explorer.minds.prompted.prompt import load_prompt
 from reasoned_explorer.minds.prompted.reading import (
     CUT_OFF,
     DECLINED,
@@ -127,6 +132,33 @@ def test_what_is_no_scene_is_none():
     assert read_scene('{"scene": "A road leads on here."} {"scene": "A path leads on here."}', SHOWN) == Unreadable(
         SEVERAL
     )
+
+
+@pytest.mark.parametrize("role", ["evaluator", "checker", "visionary"])
+def test_the_schema_itself_is_no_answer(role: str):
+    schema = json.dumps(load_prompt(role).answer_schema)
+    assert isinstance(read_judgement(schema, SHOWN), Unreadable)
+    assert isinstance(read_finding(schema, SHOWN), Unreadable)
+    assert isinstance(read_scene(schema, SHOWN), Unreadable)
+
+
+PIECES = st.lists(
+    st.sampled_from(
+        ["level", "found", "scene", "blocked", '"', "'", ":", "=", "{", "}", "[", "]", ",", " ", "\n", "4", "-", "/", "5",
+         "1", "yes", "no", "true", "false", "null", "NaN", "very likely", "low", "<think>", "</think>", "```", "**", "٤"]
+    ),
+    max_size=14,
+).map("".join)  # fmt: skip
+
+
+@given(st.one_of(PIECES, st.text()))
+def test_whatever_comes_is_read_or_is_not(answer: str):
+    judgement = read_judgement(answer, SHOWN)
+    assert isinstance(judgement, Unreadable) or 1.0 <= judgement.level <= 5.0
+    finding = read_finding(answer, SHOWN)
+    assert isinstance(finding, Unreadable) or finding.certainty is None or 0.0 <= finding.certainty <= 1.0
+    scene = read_scene(answer, SHOWN)
+    assert isinstance(scene, Unreadable) or len(scene.split()) >= 4
 
 
 def test_a_long_scene_ends_after_a_sentence():
