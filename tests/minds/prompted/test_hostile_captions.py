@@ -65,8 +65,8 @@ def test_nothing_of_a_caption_stands_outside_its_fence(caption: str, form: Form)
 @settings(max_examples=60, deadline=None)
 def test_nothing_of_any_text_stands_outside_its_fence(caption: str):
     prompt = load_prompt("checker")
-    asked = prompt.asked({"goal": GOAL.text, "scene": caption})
-    assert outside(asked) == outside(prompt.asked({"goal": GOAL.text, "scene": HARMLESS}))
+    asked = prompt.asked({"goal": GOAL.text, "scene": caption}, Form.TEXT)
+    assert outside(asked) == outside(prompt.asked({"goal": GOAL.text, "scene": HARMLESS}, Form.TEXT))
 
 
 @forms
@@ -81,6 +81,9 @@ def test_a_goal_is_fenced_as_well(form: Form):
 def obeys_what_stands_outside(request: ChatRequest) -> str:
     """Does what it is told to wherever it is told, but for what stands within a fence that it was told of."""
     told = outside(request.user)
+    prompt = load_prompt(request.role)
+    for ours in (prompt.as_json, prompt.as_text):
+        told = told.replace(ours.strip(), "")
     if re.search(
         r"ignore|found\W+(?:yes|true)|level\W+5|answer\W+(?:with\W+)?yes|say yes|system|at the highest", told, re.I
     ):
@@ -156,7 +159,7 @@ def test_what_a_caption_or_an_answer_says_is_not_passed_on_when_it_is_asked_agai
     if isinstance(first_reading, Unreadable):
         again = outside(fake.asked[1].user)
         assert again.startswith(outside(fake.asked[0].user))
-        assert again.endswith(f"could not be used: {first_reading.reason}. Answer again, in the form you were told.")
+        assert again.endswith(f"could not be used: {first_reading.reason}. Answer again, in just that form.")
 
 
 @hostile

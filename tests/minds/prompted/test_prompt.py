@@ -10,7 +10,7 @@ from reasoned_explorer.model import SettingsError
 from tests.minds.prompted.fakes import inside, lines
 
 #: What each version says. A change of a prompt is a new version: records and stores tell answers apart by it.
-DIGESTS = {"evaluator/1": "768d01da4404", "checker/1": "072433816b0b", "visionary/1": "65c15c4cbe9f"}
+DIGESTS = {"evaluator/1": "d38538ed5d8a", "checker/1": "2183af054400", "visionary/1": "cce77bbedd50"}
 VALID = """
 name = "checker"
 version = 4
@@ -27,15 +27,9 @@ type = "boolean"
 def test_a_changed_prompt_has_a_new_version(role: str):
     prompt = load_prompt(role)
     data = {"goal": "G", "scene": "S", "which": "W"}
-    said = "\n".join(
-        (
-            prompt.told(Form.JSON),
-            prompt.told(Form.TEXT),
-            prompt.asked(data),
-            prompt.asked(data, again="R"),
-            json.dumps(prompt.answer_schema),
-        )
-    )
+    told = [prompt.told(form) for form in Form]
+    asked = [prompt.asked(data, form, again=again) for form in Form for again in ("", "R")]
+    said = "\n".join([*told, *asked, json.dumps(prompt.answer_schema)])
     digest = hashlib.sha256(said.encode()).hexdigest()[:12]
     assert DIGESTS.get(prompt.id) == digest, f"{prompt.id} says something new ({digest}): give it a new version"
 
@@ -67,7 +61,9 @@ def test_the_visionary_is_told_no_goal():
     prompt = load_prompt("visionary")
     assert "{goal}" not in prompt.question
     assert not any(example.goal for example in prompt.examples)
-    assert list(inside(prompt.asked({"goal": "Find me a bench", "scene": "A road.", "which": ""}))) == ["scene"]
+    assert list(inside(prompt.asked({"goal": "Find me a bench", "scene": "A road.", "which": ""}, Form.TEXT))) == [
+        "scene"
+    ]
 
 
 def test_a_prompt_of_ones_own_is_read_from_a_folder(tmp_path: Path):

@@ -150,7 +150,7 @@ def test_an_endpoint_is_asked_in_the_best_form_that_it_can_answer_in():
             run(call(GOAL, [scene(WITH)]))
         run(minds.imagine(GOAL, [scene(WITH)], count=1))
         for request in fake.asked:
-            assert ("JSON" in request.system) == (request.schema is not None)
+            assert ("JSON" in request.user) == (request.schema is not None)
         return {request.role: request.schema for request in fake.asked}
 
     assert schemas(Abilities()) == {"evaluator": None, "checker": None, "visionary": None}

@@ -80,36 +80,34 @@ class Prompt(BaseModel):
         return f"{self.name}/{self.version}"
 
     def told(self, form: Form) -> str:
-        """Return the system message for a form of answer: task, rule of the fence, form, examples."""
-        parts = [
-            self.system.strip(),
-            _FENCE_RULE.strip(),
-            (self.as_json if form is Form.JSON else self.as_text).strip(),
-        ]
+        """Return the system message for a form of answer: task, rule of the fence, examples."""
+        parts = [self.system.strip(), _FENCE_RULE.strip()]
         for number, example in enumerate(self.examples, 1):
-            data = {"goal": example.goal, "scene": example.scene, "which": ""}
-            question = self.asked(data).strip()
+            data = {"goal": example.goal, "scene": example.scene}
+            question = self._filled(data)
             parts.append(f"Example {number}.\n{question}\n\nThe right answer:\n{_answered(example.answer, form)}")
         return "\n\n".join(parts)
 
-    def asked(self, data: Mapping[str, str], *, again: str = "") -> str:
-        """Return the question.
+    def asked(self, data: Mapping[str, str], form: Form, *, again: str = "") -> str:
+        """Return the question, with the form of the answer last: small models forget what was said before the data.
 
         Args:
             data: ``goal`` and ``scene`` are fenced off; what else there is is put in as it is.
+            form: How to answer.
             again: Why the last answer to it could not be used, in words of ours; empty where it is asked first.
         """
-        filled = _PLACE.sub(
+        parts = [self._filled(data), (self.as_json if form is Form.JSON else self.as_text).strip()]
+        if again:
+            parts.append(f"Your last answer to this could not be used: {again}. Answer again, in just that form.")
+        return "\n\n".join(parts)
+
+    def _filled(self, data: Mapping[str, str]) -> str:
+        return _PLACE.sub(
             lambda place: (
                 fenced(place[1].upper(), data[place[1]]) if place[1] in _DATA[self.name] else data.get(place[1], "")
             ),
             self.question.strip(),
         ).strip()
-        if again:
-            filled += (
-                f"\n\nYour last answer to this could not be used: {again}. Answer again, in the form you were told."
-            )
-        return filled
 
 
 def _answered(answer: Mapping[str, bool | float | str], form: Form) -> str:

@@ -191,7 +191,9 @@ class PromptedMinds:
             tally.asked_again += 1
             room = 2 if said.reason == CUT_OFF else 1
             again = replace(
-                request, user=self._prompts[role].asked(data, again=said.reason), max_tokens=room * request.max_tokens
+                request,
+                user=self._prompts[role].asked(data, self._form(role), again=said.reason),
+                max_tokens=room * request.max_tokens,
             )
             said, answer = _understood(await self.caller.ask(again), read, shown)
         if said is None or isinstance(said, Unreadable):
@@ -199,18 +201,22 @@ class PromptedMinds:
             return None, answer
         return said, answer
 
+    def _form(self, role: str) -> Form:
+        # A description needs no form of its own unless the server holds the model to it; a decision is better held.
+        can = self.abilities
+        return Form.JSON if can.json_schema or (can.json_object and role != "visionary") else Form.TEXT
+
     def _request(
         self, role: str, key: tuple[int, ...], data: dict[str, str], *, max_tokens: int, seed: int
     ) -> ChatRequest:
         prompt, can = self._prompts[role], self.abilities
-        # A description needs no form of its own unless the server holds the model to it; a decision is better held.
-        in_json = can.json_schema or (can.json_object and role != "visionary")
-        schema = (prompt.answer_schema if can.json_schema else ANY_OBJECT) if in_json else None
+        form = self._form(role)
+        schema = None if form is Form.TEXT else prompt.answer_schema if can.json_schema else ANY_OBJECT
         return ChatRequest(
             role=role,
             key=key,
-            system=prompt.told(Form.JSON if in_json else Form.TEXT),
-            user=prompt.asked(data),
+            system=prompt.told(form),
+            user=prompt.asked(data, form),
             prompt=prompt.id,
             schema=schema,
             max_tokens=max_tokens + self.settings.spare_tokens,
