@@ -29,6 +29,7 @@ def test_no_text_closes_its_fence(text: str):
     assert code not in inside
     assert not set('<>{}[]`"\\|:=') & set(inside)
     assert inside.splitlines() in ([], [inside])
+    assert not has_mark(inside)
 
 
 @given(ANY_TEXT)
@@ -53,6 +54,11 @@ def test_the_same_text_has_the_same_fence_and_another_text_another():
     assert fenced("SCENE", "a bench").split("\n")[0] != fenced("SCENE", "a tree").split("\n")[0]
     assert has_mark(fenced("SCENE", "a bench"))
     assert not has_mark("<<<NAME code and NAME code>>>")
+
+
+@pytest.mark.parametrize("text", ["<<SCENE 12f22", "SCENE d3bca3dd>>", "GOAL 18c3abd>", "18c3abdc >>", "<<< SCENE"])
+def test_a_mark_is_known_as_small_models_write_it_down(text: str):
+    assert has_mark(f"The scene: {text} A wall.")
 
 
 def test_a_code_that_the_text_holds_is_drawn_again(monkeypatch: pytest.MonkeyPatch):

@@ -183,6 +183,9 @@ def test_an_honest_answer_in_the_form_that_was_asked_for_stands_whatever_the_cap
         assessment, verdict, child = ask_all(minds, caption)
         assert (assessment.score, verdict.found) == (2.0, False)
         assert (assessment.fault, verdict.fault, child.fault) == (None, None, None)
+    quoted = json.dumps({"evidence": harmless(caption), "found": False, "confidence": 0.9})
+    (verdict,) = run(PromptedMinds(Fake(lambda request: quoted)).check(GOAL, [scene(caption)]))
+    assert (verdict.found, verdict.fault) == (False, None)
     for level in range(1, 6):
         (assessment,) = run(
             PromptedMinds(Fake(lambda request, n=level: f"LEVEL: {n}")).evaluate(GOAL, [scene(caption)])

@@ -163,6 +163,9 @@ def test_a_long_scene_ends_after_a_sentence():
     assert isinstance(scene, str)
     assert len(scene.split()) <= 120
     assert scene.endswith("trees.")
+    assert (
+        read_scene("A path leads past tall trees. A pond lies ahead, and a", SHOWN) == "A path leads past tall trees."
+    )
 
 
 def test_reasons_are_words_of_ours_that_read_as_no_answer():

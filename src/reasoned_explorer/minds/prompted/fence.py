@@ -25,7 +25,8 @@ _HARMLESS = str.maketrans(
 )
 _UNSEEN = frozenset({"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"})
 _TIME_OF_DAY = re.compile(r"(?<=\d):(?=\d)")
-_MARK = re.compile(r"<<<\s*[A-Z]+ [0-9a-f]{8}|[0-9a-f]{8}\s*>>>")
+#: A mark, also as small models write it down: with fewer brackets, or a code of another length.
+_MARK = re.compile(r"<<\s*(?:SCENE|GOAL)\b|\b(?:SCENE|GOAL)\s+[0-9a-f]{6,}\s*>|[0-9a-f]{8}\s*>>")
 
 
 def tidy(text: str) -> str:
@@ -68,7 +69,7 @@ def fenced(label: str, text: str) -> str:
 
 
 def has_mark(text: str) -> bool:
-    """Return whether a text holds a mark of a fence: an answer that does repeats its question."""
+    """Return whether a text holds a mark of a fence, as an answer does that repeats its question."""
     return _MARK.search(text) is not None
 
 

@@ -330,10 +330,7 @@ def _why(text: str, otherwise: str) -> str:
 
 
 def _shortened(scene: str) -> str:
-    """Return a scene of at most so many words, ended after a sentence where it has one."""
-    words = scene.split()
-    if len(words) <= _LONGEST_SCENE_WORDS:
-        return scene
-    kept = " ".join(words[:_LONGEST_SCENE_WORDS])
+    """Return a scene of at most so many words that ends after a sentence, where it has one near its end."""
+    kept = " ".join(scene.split()[:_LONGEST_SCENE_WORDS])
     end = max(kept.rfind(sign) for sign in ".!?")
     return kept[: end + 1] if end > len(kept) // 2 else kept

@@ -109,9 +109,11 @@ class PromptedMinds:
     seed: int = 0
     tallies: dict[str, Tally] = field(default_factory=lambda: {role: Tally() for role in ROLES})
     _prompts: dict[str, Prompt] = field(init=False)
+    _told: dict[str, str] = field(init=False)
 
     def __post_init__(self) -> None:
         self._prompts = {role: load_prompt(role, self.settings.prompts) for role in ROLES}
+        self._told = {role: prompt.told(self._form(role)) for role, prompt in self._prompts.items()}
 
     async def evaluate(self, goal: Goal, scenes: Sequence[Scene]) -> Sequence[Assessment]:
         """Return one assessment per scene, in order; a missing one carries a fault."""
@@ -215,7 +217,7 @@ class PromptedMinds:
         return ChatRequest(
             role=role,
             key=key,
-            system=prompt.told(form),
+            system=self._told[role],
             user=prompt.asked(data, form),
             prompt=prompt.id,
             schema=schema,
