@@ -404,6 +404,7 @@ def _wrong_key(request: web.Request) -> web.Response:
 
 _ERRORS: dict[str, Callable[[web.Request], web.Response]] = {
     "429": lambda _: _error(429, "Rate limit reached", headers={"retry-after-ms": "30"}),
+    "429 at once": lambda _: _error(429, "Rate limit reached", headers={"retry-after": "0"}),
     "429 for an hour": lambda _: _error(429, "Rate limit reached", headers={"retry-after": "3600"}),
     "quota": lambda _: _error(429, "You exceeded your current quota", code="insufficient_quota"),
     "500": lambda _: _error(500, "The server had an error"),

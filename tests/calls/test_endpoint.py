@@ -82,3 +82,9 @@ def test_all_settings_out_of_range_are_told_at_once() -> None:
     with pytest.raises(SettingsError) as caught:
         AskingSettings(deadline_s=0.0, tries=0, limits=Limits(requests_per_minute=-1.0), structure="xml")  # type: ignore[arg-type]
     assert len(caught.value.faults) == 4
+
+
+def test_the_environment_may_name_another_address_and_an_option_goes_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OPENAI_BASE_URL", "http://localhost:8000/v1")
+    assert endpoint_at().base_url == "http://localhost:8000/v1"
+    assert endpoint_at("http://localhost:9/v1").base_url == "http://localhost:9/v1"

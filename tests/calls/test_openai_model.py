@@ -133,6 +133,15 @@ def test_what_stays_is_a_fault_of_its_own_kind(word: str, fault: str, asked: int
     assert answer.retries == asked - 1
 
 
+def test_a_server_that_always_turns_away_is_given_up_in_the_end() -> None:
+    settings = AskingSettings(patience_s=0.3)
+    with StubServer(Behaviour(script=("429 at once",) * 100_000)) as server:
+        answer = ask(server, settings=settings)
+    assert answer.fault is not None
+    assert answer.fault.startswith("rate limit: ")
+    assert answer.retries > 0
+
+
 def test_half_an_answer_is_kept_but_is_none_where_structure_was_wanted() -> None:
     with StubServer(Behaviour(script=("cut off", "cut off"))) as server:
         structured, caption = ask(server, question(schema=SCHEMA)), ask(server, question())
@@ -218,7 +227,7 @@ def test_parameters_that_a_server_does_not_want_are_left_out_from_then_on(names:
     assert [answer.fault for answer in answers] == [None, None]
     assert answers[1].retries == 0
     assert not names & set(server.received[-1].body)
-    assert model.left_out == names - {"max_tokens"}
+    assert model.left_out == model.asking("none").left_out == names - {"max_tokens"}
     assert ("max_completion_tokens" in server.received[-1].body) == ("max_tokens" in names)
 
 

@@ -92,7 +92,7 @@ def share_of_limit(limits: Limits, server: Bucket, calls: int = 6000) -> float:
     ],
 )
 def test_a_known_limit_is_used_up_and_never_exceeded(limits: Limits, server: Bucket) -> None:
-    assert share_of_limit(limits, server) >= 0.99
+    assert share_of_limit(limits, server) >= 0.98
     assert server.turned_away == 0
 
 
@@ -103,6 +103,7 @@ def test_a_known_limit_is_used_up_and_never_exceeded(limits: Limits, server: Buc
         pytest.param(Limits(), Bucket(10, 10), id="only Retry-After, in milliseconds"),
         pytest.param(Limits(), Bucket(10, 10, retry_after="seconds"), id="only Retry-After, in whole seconds"),
         pytest.param(Limits(), Bucket(10, 10, retry_after=None), id="nothing but 429"),
+        pytest.param(Limits(), Bucket(50, 50, retry_after="seconds"), id="the same where much is lost in a second"),
         pytest.param(Limits(), Window(10, 100), id="a window of ten seconds"),
         pytest.param(Limits(requests_per_minute=1200), Bucket(10, 10), id="a person says twice what there is"),
     ],
@@ -119,8 +120,8 @@ def test_tokens_a_minute_hold_back_too() -> None:
         await asyncio.gather(*(call(pacer, Bucket(1e6, 1e6), tokens=300.0) for _ in range(42)))
         return loop.time() - LATENCY_S - began_s
 
-    # 600 tokens may go at once, the other 12,000 at 100 a second
-    assert VirtualClock().run(traffic()) == pytest.approx(120.0, abs=0.1)
+    # 600 tokens may go at once, the other 12,000 at 99 a second
+    assert VirtualClock().run(traffic()) == pytest.approx(12_000 / 99)
 
 
 def test_tokens_that_were_guessed_wrong_are_set_right() -> None:
@@ -132,7 +133,7 @@ def test_tokens_that_were_guessed_wrong_are_set_right() -> None:
         await pacer.turn(tokens=100.0, patience_s=100.0)
         return loop.time() - asked_s
 
-    assert VirtualClock().run(traffic()) == pytest.approx(11.0, abs=0.1)  # 1000 too many, and 100 for the next
+    assert VirtualClock().run(traffic()) == pytest.approx(1100 / 99)  # 1000 too many, and 100 for the next
 
 
 def test_retry_after_holds_for_everybody() -> None:

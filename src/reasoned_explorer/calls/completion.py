@@ -119,7 +119,7 @@ def parameters(
         ],
         length_name: request.max_tokens,
         "temperature": request.temperature,
-        "seed": request.seed,
+        "seed": request.seed % 2**31,  # what every server takes
     }
     if request.top_logprobs:
         sent |= {"logprobs": True, "top_logprobs": request.top_logprobs}

@@ -114,9 +114,10 @@ class OpenAIModel:
 
     def asking(self, structure: Structure) -> "OpenAIModel":
         """Return the same model, asked for the form of its answers in another way; client and pace stay shared."""
-        return OpenAIModel(
-            self._model, self.endpoint, settings=replace(self._settings, structure=structure), price=self.price
-        )
+        settings = replace(self._settings, structure=structure)
+        other = OpenAIModel(self._model, self.endpoint, settings=settings, price=self.price)
+        other._without, other._length_name = self._without - {"response_format"}, self._length_name
+        return other
 
     async def ask(self, request: ChatRequest) -> ChatAnswer:
         """Return the answer. Whatever goes wrong at the other end is a fault in it."""
@@ -133,7 +134,6 @@ class OpenAIModel:
             except NoTurnError as error:
                 return self._given_up(spent, f"rate limit: {error}")
             began_s = loop.time()
-            patience_s -= began_s - asked_s
             end, reading = _End(Sign.NEUTRAL), None
             spent.asked += 1
             try:
@@ -142,9 +142,15 @@ class OpenAIModel:
             finally:
                 taken = reading.tokens_in + reading.tokens_out if reading is not None else None
                 pacer.done(ticket, end.sign, tokens=taken, headers=end.headers)
+            turned_away = end.sign is Sign.LIMITED
+            if turned_away:
+                patience_s -= loop.time() - asked_s
+                if patience_s <= 0.0:  # a server that says "at once" and does not mean it
+                    return self._given_up(spent, end.fault or "")
+                continue
+            patience_s -= began_s - asked_s
             left_s -= loop.time() - began_s
-            turned_away = end.sign is Sign.LIMITED and end.again
-            if turned_away or self._learned(end):
+            if self._learned(end) and left_s > 0.0:
                 continue
             spent.tries += 1
             if reading is not None and reading.fault is None:

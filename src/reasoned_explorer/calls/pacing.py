@@ -17,8 +17,10 @@ from enum import Enum, auto
 from reasoned_explorer.calls.rate_headers import rate_state, retry_after_s
 
 _BURST_SHARE = 0.1  # of a minute's worth may go at once where nobody tells how much may
+_MARGIN = 0.99  # of a limit that is told: calls do not arrive as evenly as they are sent
 _CREEP = 0.005  # the measured rate is raised by this share with each grant, to find out whether more is granted
-_CREEP_AFTER = 30  # grants since the last refusal until it is raised by all of it
+_CREEP_AFTER = 30.0  # grants since the last refusal until it is raised by all of it
+_RAMP_OF_GATE = 2.0  # or this many times the grants that a closed gate costs, where that is more
 _LONGEST_BACK_OFF_S = 30.0
 _FIRST_BACK_OFF_S = 0.5
 _JAM_MEMORY_S = 30.0
@@ -95,7 +97,7 @@ class _Bucket:
 
     @property
     def rate_per_s(self) -> float:
-        return min(self.told_per_s, self.measured_per_s)
+        return min(_MARGIN * self.told_per_s, self.measured_per_s)
 
     @property
     def _most(self) -> float:
@@ -145,6 +147,7 @@ class _Jam:
     granted: float = 0.0
     refused: float = 0.0
     smooth: int = 0
+    ramp: float = _CREEP_AFTER
 
 
 @dataclass(eq=False, slots=True)
@@ -278,6 +281,8 @@ class Pacer:
             per_s = max(1.0, jam.granted - jam.refused + 1.0) / span_s
             jam.smooth = 0
             gate_s = self._closed_until_s - self._closed_at_s
+            # The more a closed gate costs, the more slowly the next refusal is looked for.
+            jam.ramp = max(_CREEP_AFTER, _RAMP_OF_GATE * per_s * gate_s)
             self._requests.measured(per_s, self._closed_until_s, after_s=gate_s)
             if span_s > _JAM_MEMORY_S:
                 jam.since_s, jam.granted, jam.refused = (
@@ -325,5 +330,5 @@ class Pacer:
             jam = self._jam.number
             self._jam.granted += 1.0
             self._jam.smooth += 1
-            self._requests.measured_per_s *= 1.0 + _CREEP * min(1.0, self._jam.smooth / _CREEP_AFTER)
+            self._requests.measured_per_s *= 1.0 + _CREEP * min(1.0, self._jam.smooth / self._jam.ramp)
         return Ticket(self._number, now_s, tokens, jam, self._requests.spent, self._tokens.spent)
