@@ -70,6 +70,10 @@ class Caller:
         self._player = tape if isinstance(tape, TapePlayer) else None
         self._recorder = tape if isinstance(tape, TapeRecorder) else None
 
+    def record_to(self, recorder: TapeRecorder) -> None:
+        """Write every call to a tape from now on."""
+        self._recorder = recorder
+
     async def ask(self, request: ChatRequest) -> ChatAnswer:
         """Return the answer, at the mission time when it is there. What goes wrong is a fault in it.
 

@@ -95,3 +95,12 @@ class ChatModel(Protocol):
         It runs in a real event loop of its own, many at a time; cancelling it ends the call.
         """
         ...
+
+
+#: What the name of a model begins with; what follows is the model's name where it is served.
+MODEL_PREFIXES = ("openai:",)
+
+
+def is_model_name(name: str) -> bool:
+    """Return whether a name means a model that is called, such as ``openai:gpt-4o-mini``, and nothing registered."""
+    return name.startswith(MODEL_PREFIXES)

@@ -8,6 +8,7 @@ import typer
 from reasoned_explorer import __version__
 from reasoned_explorer.cli.answers import answering
 from reasoned_explorer.cli.bench_app import add_commands
+from reasoned_explorer.cli.minds_app import minds_app
 from reasoned_explorer.cli.worlds_app import worlds_app
 
 app = typer.Typer(
@@ -18,6 +19,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.add_typer(worlds_app, name="worlds")
+app.add_typer(minds_app, name="minds")
 add_commands(app)
 
 
@@ -71,7 +73,19 @@ def run(
     latency: Annotated[
         str, typer.Option(help="How long modelled calls take: gpt-2023, gpt-fast, instant.")
     ] = "gpt-2023",
-    clock: Annotated[str, typer.Option(help="virtual, mixed or real time.")] = "virtual",
+    clock: Annotated[
+        str | None,
+        typer.Option(help="virtual, mixed or real time.", show_default="virtual; mixed where a model is called"),
+    ] = None,
+    base_url: Annotated[
+        str | None,
+        typer.Option(help="Where models openai:… are, e.g. http://localhost:8000/v1.", show_default="OpenAI's"),
+    ] = None,
+    record: Annotated[Path | None, typer.Option(help="Keep every call to a model in this file.")] = None,
+    replay: Annotated[Path | None, typer.Option(help="Take every answer from such a file; nobody is called.")] = None,
+    cache: Annotated[Path | None, typer.Option(help="File of answers that may be used again; made if need be.")] = None,
+    budget_usd: Annotated[float | None, typer.Option(help="End before calls cost more, US dollars.")] = None,
+    budget_minutes: Annotated[float | None, typer.Option(help="End it after so many real minutes.")] = None,
     views: Annotated[int, typer.Option(help="Headings per look (N).")] = 3,
     sweep: Annotated[float, typer.Option(help="Range of motion that they span, degrees.")] = 120.0,
     t_max: Annotated[float, typer.Option(help="Mission time above which it is failed, minutes.")] = 30.0,
@@ -86,6 +100,7 @@ def run(
 
     Exit code 0: found. 1: ended without. 2: bad input. 3: a part failed. 130: stopped with Ctrl-C.
     """
+    from reasoned_explorer.cli.models import ModelOptions
     from reasoned_explorer.cli.run import RunOptions, run_from_options
 
     run_from_options(
@@ -114,6 +129,7 @@ def run(
             out=out,
             draw=map_,
             quiet=quiet,
+            models=ModelOptions(base_url, record, replay, cache, budget_usd, budget_minutes),
         )
     )
 

@@ -3,7 +3,7 @@
 import math
 import re
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +11,12 @@ import typer
 
 from reasoned_explorer.cli.answers import ExitCode, complain
 from reasoned_explorer.cli.console import Output
+from reasoned_explorer.cli.models import ModelOptions
 from reasoned_explorer.cli.parsing import BoxDeg, check_start_form, parse_bbox, parse_start
 from reasoned_explorer.cli.progress import Progress, header_lines, summary_lines
 from reasoned_explorer.evaluation.methods import BOUND_METHODS
 from reasoned_explorer.evaluation.mission import Mission, MissionResult
-from reasoned_explorer.evaluation.mission_settings import MissionSettings, errors_of
+from reasoned_explorer.evaluation.mission_settings import MissionSettings, errors_of, models_of
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.model import Fault, Gathering, RecordError, SettingsError
 from reasoned_explorer.model.checks import is_there
@@ -48,7 +49,7 @@ class RunOptions:
     captioner: str
     vehicle: str
     latency: str
-    clock: str
+    clock: str | None
     views: int
     sweep_deg: float
     t_max_min: float
@@ -58,6 +59,7 @@ class RunOptions:
     out: Path | None
     draw: bool
     quiet: bool
+    models: ModelOptions
 
     def settings(self, found: Gathering) -> MissionSettings:
         """Return the mission's settings; what is wrong with them is kept in ``found``, defaults in its stead."""
@@ -77,12 +79,14 @@ class RunOptions:
             captioner=self.captioner,
             vehicle=self.vehicle,
             latency=self.latency,
-            clock=self.clock,
             explorer=explorer,
             success_radius_m=self.radius_m,
             seed=self.seed,
         )
+        # Models that are called take real seconds.
+        settings = replace(settings, clock=self.clock or ("mixed" if models_of(settings) else "virtual"))
         found.add(*errors_of(settings))
+        self.models.check(settings, found)
         if self.planner in BOUND_METHODS or "+" in self.planner or ":" in self.planner or "@" in self.planner:
             fault = Fault(f"{self.planner!r}", "a planner by its name alone", "it may be a row of rex bench --planners")
             found.add(SettingsError("--planner", [fault]))
@@ -128,7 +132,8 @@ def run_from_options(options: RunOptions) -> None:
     for note in notes:
         complain(f"note: {note}; choose a part with --bbox")
     stop_if_asked()
-    mission = Mission(options.goal, world, settings, start=parse_start(options.start, world))
+    desk = options.models.desk()
+    mission = Mission(options.goal, world, settings, start=parse_start(options.start, world), desk=desk)
     stop_if_asked()
     if not options.quiet:
         for line in header_lines(mission.header):
@@ -144,7 +149,8 @@ def run_from_options(options: RunOptions) -> None:
             for line in progress.lines(step):
                 console.print(line, markup=False, soft_wrap=True)
 
-    result = mission.run(folder=folder, on_step=on_step)
+    with options.models.taping(desk, mission):
+        result = mission.run(folder=folder, on_step=on_step)
     for line in summary_lines(result.record):
         console.print(line, markup=False, soft_wrap=True)
     _keep(result, folder, draw=options.draw)

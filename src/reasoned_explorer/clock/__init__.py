@@ -1,5 +1,6 @@
 """Real, virtual and mixed time behind one face; the agent is written once against `Clock`."""
 
 from reasoned_explorer.clock.clock import Clock, MixedClock, RealClock, VirtualClock
+from reasoned_explorer.clock.live_thread import run_live
 
-__all__ = ["Clock", "MixedClock", "RealClock", "VirtualClock"]
+__all__ = ["Clock", "MixedClock", "RealClock", "VirtualClock", "run_live"]

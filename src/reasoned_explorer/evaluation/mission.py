@@ -10,17 +10,20 @@ from pathlib import Path
 
 import numpy as np
 
+from reasoned_explorer.calls.caller import Caller, end_of
 from reasoned_explorer.calls.ledger import CallRecord, Ledger
 from reasoned_explorer.evaluation.guide import GUIDE_LABEL, Guide
 from reasoned_explorer.evaluation.mission_settings import CLOCKS, errors_of, with_overrides
 from reasoned_explorer.evaluation.mission_settings import MissionSettings as MissionSettings  # noqa: PLC0414 - is had from here, too
+from reasoned_explorer.evaluation.model_desk import ModelDesk
 from reasoned_explorer.evaluation.record_file import RecordWriter
 from reasoned_explorer.evaluation.scoring import Look, MissionScore, outcome_of, score
 from reasoned_explorer.evaluation.truth import OracleTruth
 from reasoned_explorer.exploration.explorer import Exploration, Explorer, Parts
 from reasoned_explorer.geometry import Pose
-from reasoned_explorer.minds.context import MindContext
+from reasoned_explorer.minds.context import MindContext, Minds
 from reasoned_explorer.minds.latency import latency_profile
+from reasoned_explorer.minds.prompted import prompted_minds
 from reasoned_explorer.minds.registry import make_minds
 from reasoned_explorer.model import (
     Fault,
@@ -98,9 +101,12 @@ class Mission:
         settings: Who does what.
         start: Where it begins; None draws a start by the seed.
         judge: A judge of this goal, world, vehicle and success radius from an earlier mission, to share its work with.
+        desk: Makes the callers of models; None where the settings name none, or for one without cache, tape and budget.
 
     Raises:
         GoalError: If the goal cannot be understood.
+        PartError: If a model does not answer.
+        MissingDependencyError: If a model needs what is not installed.
         StartError: If the start is none or no mission can begin at it, or no start can be found.
         WorldError: If the world is none.
         UnknownNameError: If a name is not registered.
@@ -116,6 +122,7 @@ class Mission:
         *,
         start: Pose | None = None,
         judge: Judge | None = None,
+        desk: ModelDesk | None = None,
     ) -> None:
         _check_arguments(world, settings, start)
         self.settings = settings if settings is not None else MissionSettings()
@@ -131,6 +138,7 @@ class Mission:
         self.start = self._start(start, self.judge.traveller)
         stop_if_asked()
         self.clock = CLOCKS[self.settings.clock]()
+        self._desk = desk
         # Privileged minds and the guide alone may read the truth; they are the only ones that ask for it.
         truth = OracleTruth(self.atlas, self.judge, self.profile, self.settings.explorer)
         self.explorer: Explorer | Guide
@@ -225,8 +233,15 @@ class Mission:
     def _explorer(self, truth: OracleTruth) -> Explorer:
         settings, ledger = self.settings, Ledger()
         latency = latency_profile(settings.latency)
+        callers: list[Caller] = []
+
+        def model_minds(name: str) -> Minds:
+            self._desk = self._desk or ModelDesk()
+            callers.append(self._desk.caller(name, self.clock, ledger))
+            return prompted_minds(callers[-1], name=name, abilities=self._desk.abilities(name), seed=settings.seed)
+
         minds = make_minds(
-            MindContext(self.clock, latency, ledger, settings.seed, truth),
+            MindContext(self.clock, latency, ledger, settings.seed, truth, model_minds),
             settings.minds,
             visionary=settings.visionary,
             evaluator=settings.evaluator,
@@ -247,7 +262,8 @@ class Mission:
         self._labels = (planner.label, minds.label, captioner.label)
         explorer = with_overrides(settings.explorer, planner)
         self.settings = replace(settings, explorer=explorer)
-        parts = Parts(self._vehicle(), captioner, planner, minds.checker, self.clock, ledger)
+        vehicle, must_end = self._vehicle(), end_of(callers)
+        parts = Parts(vehicle, captioner, planner, minds.checker, self.clock, ledger, must_end)
         return Explorer(parts, explorer)
 
     def _vehicle(self) -> SimulatedVehicle:

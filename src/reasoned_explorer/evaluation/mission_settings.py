@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, fields, replace
 from functools import partial
 from typing import Any
 
+from reasoned_explorer.calls.chat import is_model_name
 from reasoned_explorer.calls.ledger import Ledger
 from reasoned_explorer.clock import Clock, MixedClock, RealClock, VirtualClock
 from reasoned_explorer.exploration.settings import ExplorerSettings
@@ -31,14 +32,15 @@ class MissionSettings:
     Attributes:
         planner: A registered planner.
         planner_settings: Of that planner.
-        minds: Registered minds; they fill every role that has no name of its own.
+        minds: Registered minds, or a model such as ``openai:gpt-4o-mini``; they fill every role that has no name of its
+            own.
         visionary: Who imagines.
         evaluator: Who scores.
         checker: Who notices the goal.
         captioner: A registered captioner.
         vehicle: A registered vehicle profile.
         latency: A latency profile: how long modelled calls take.
-        clock: ``virtual``, ``mixed`` or ``real``.
+        clock: ``virtual``, ``mixed`` or ``real``; where a model is called, one of the last two.
         explorer: How the agent explores.
         success_radius_m: R of the judge, metres, in [1, 50].
         seed: Of the mission: everything that is drawn is keyed by it; in [0, 2^64).
@@ -87,6 +89,8 @@ def errors_of(settings: MissionSettings) -> tuple[InputError, ...]:
             found.check(check)
     if not wrong & {"minds", "visionary", "evaluator", "checker"}:
         found.check(partial(check_roles, **minds_of(settings)))
+        if "clock" not in wrong:
+            found.check(partial(_check_clock, settings))
     if not wrong & {"planner", "planner_settings", "explorer"}:
         found.check(lambda: with_overrides(settings.explorer, _planner_on_trial(settings)))
     return tuple(found.errors)
@@ -134,16 +138,42 @@ def _typed(settings: MissionSettings) -> list[tuple[str, Any, str, Callable[[Any
 def _name_checks(settings: MissionSettings) -> list[tuple[str, Callable[[], object]]]:
     """Return what looks each name up, by the name's setting."""
     checks: list[tuple[str, Callable[[], object]]] = [
-        (role, partial(MINDS.load, name)) for role in _MIND_ROLES if (name := getattr(settings, role)) is not None
+        (role, partial(_check_mind, name)) for role in _MIND_ROLES if (name := getattr(settings, role)) is not None
     ]
     return [
         *checks,
-        ("captioner", partial(CAPTIONERS.load, settings.captioner)),
+        ("captioner", partial(_check_captioner, settings.captioner)),
         ("vehicle", partial(vehicle_profile, settings.vehicle)),
         ("latency", partial(latency_profile, settings.latency)),
         ("clock", partial(_check_listed, "clock", settings.clock, tuple(CLOCKS))),
         ("agent", partial(_check_listed, "agent", settings.agent, AGENTS)),
     ]
+
+
+def models_of(settings: MissionSettings) -> tuple[str, ...]:
+    """Return the models that a mission calls, each once."""
+    return tuple(dict.fromkeys(name for name in minds_of(settings).values() if is_model_name(name)))
+
+
+def _check_mind(name: str) -> None:
+    if not is_model_name(name):
+        MINDS.load(name)
+    elif not name.partition(":")[2].strip():
+        raise SettingsError("minds", [Fault(f"{name!r}", "a model's name behind the colon, e.g. openai:gpt-4o-mini")])
+
+
+def _check_captioner(name: str) -> None:
+    if is_model_name(name):
+        fault = Fault(f"captioner {name}", "a simulated captioner", "the embedded simulator takes no pictures yet")
+        raise SettingsError("captioner", [fault])
+    CAPTIONERS.load(name)
+
+
+def _check_clock(settings: MissionSettings) -> None:
+    models = models_of(settings)
+    if models and settings.clock == "virtual":
+        fault = Fault(f"the clock virtual with {', '.join(models)}", "mixed or real", "a real call takes real seconds")
+        raise SettingsError("clock", [fault])
 
 
 def _check_listed(kind: str, name: str, known: tuple[str, ...]) -> None:

@@ -1,5 +1,6 @@
 """What minds are made with, and what they are made into."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,6 +20,7 @@ class MindContext:
         ledger: Every call is written there.
         seed: Of the mission; draws are keyed by it and by scenes' keys.
         truth: What only a privileged mind (the oracle) may read; None for all others.
+        model_minds: Makes minds of a model's name, such as ``openai:gpt-4o-mini``; None where no model can be called.
     """
 
     clock: Clock
@@ -26,6 +28,7 @@ class MindContext:
     ledger: Ledger
     seed: int = 0
     truth: Any = None
+    model_minds: "Callable[[str], Minds] | None" = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
+from reasoned_explorer.calls.chat import is_model_name
 from reasoned_explorer.minds.context import MindContext, Minds
 from reasoned_explorer.model import Fault, SettingsError
 from reasoned_explorer.registry import Entry, Registry
@@ -95,12 +96,13 @@ def make_minds(
 
     Raises:
         UnknownNameError: If a name is not registered.
+        SettingsError: If a model is named where none can be called.
     """
     names = {"evaluator": evaluator or minds, "visionary": visionary or minds, "checker": checker or minds}
     made: dict[str, Minds] = {}
     for name in names.values():
         if name not in made:
-            made[name] = MINDS.load(name)(context)
+            made[name] = _of_model(name, context) if is_model_name(name) else MINDS.load(name)(context)
     if len(made) == 1:
         return replace(made[names["evaluator"]], seed=context.seed)
     label = ", ".join(f"{role}: {made[name].label}" for role, name in names.items())
@@ -111,3 +113,9 @@ def make_minds(
         checker=made[names["checker"]].checker,
         seed=context.seed,
     )
+
+
+def _of_model(name: str, context: MindContext) -> Minds:
+    if context.model_minds is None:
+        raise SettingsError("minds", [Fault(f"{name} where no model can be called", "registered minds")])
+    return context.model_minds(name)

@@ -10,6 +10,7 @@ from typing import Any
 
 from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
 from reasoned_explorer.evaluation.mission import Mission, MissionResult, judge_of
+from reasoned_explorer.evaluation.model_desk import ModelDesk
 from reasoned_explorer.evaluation.record_file import record_bytes
 from reasoned_explorer.evaluation.row import MissionRow
 from reasoned_explorer.evaluation.scoring import MissionOutcome, MissionScore, score
@@ -84,6 +85,12 @@ def _judge_of(
     return judge_of(goal, _atlas_of(*world), vehicle, radius_m)
 
 
+@lru_cache(maxsize=1)
+def _desk() -> ModelDesk:
+    """Make models once a process: what they can do is found out once, and their connections stay."""
+    return ModelDesk()
+
+
 def run_task(plan: BenchPlan, task: Task) -> Done:
     """Run a mission. What goes wrong in it is its outcome, never an exception.
 
@@ -99,7 +106,7 @@ def run_task(plan: BenchPlan, task: Task) -> Done:
     try:
         settings = plan.settings_of(task)
         judge = _judge_of(world, item.episode.id, goal, settings.vehicle, settings.success_radius_m)
-        mission = Mission(goal, atlas, settings, start=item.episode.start, judge=judge)
+        mission = Mission(goal, atlas, settings, start=item.episode.start, judge=judge, desk=_desk())
         result = mission.run()
     except ReasonedExplorerError as error:
         row = failed_row(plan, task, str(error))

@@ -1,0 +1,178 @@
+"""The models that missions call by name: made once, looked into once, and what all their calls have in common."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+from weakref import WeakSet
+
+from reasoned_explorer.calls.abilities import Abilities, probe
+from reasoned_explorer.calls.budget import Budget, faults_of_budget
+from reasoned_explorer.calls.cache import AnswerCache
+from reasoned_explorer.calls.caller import Caller
+from reasoned_explorer.calls.chat import ChatAnswer, ChatModel, ChatRequest, is_model_name
+from reasoned_explorer.calls.ledger import Ledger
+from reasoned_explorer.calls.openai_model import OpenAIModel, openai_model
+from reasoned_explorer.calls.tape import TapePlayer, TapeRecorder
+from reasoned_explorer.clock import Clock, run_live
+from reasoned_explorer.model import Fault, PartError, RecordError, SettingsError
+from reasoned_explorer.model.checks import is_there
+
+
+@dataclass(frozen=True, slots=True)
+class KnownModel:
+    """A model, and what it can do.
+
+    Attributes:
+        model: Answers.
+        abilities: What it was found to be able to.
+        priced: Whether it is known what it costs.
+    """
+
+    model: ChatModel
+    abilities: Abilities
+    priced: bool
+
+
+class _Taped:
+    """Stands for the model whose answers are on a tape; there is nobody to ask."""
+
+    def __init__(self, name: str, fingerprint: str) -> None:
+        self.name, self.fingerprint, self.is_local = name, fingerprint, True
+
+    async def ask(self, request: ChatRequest) -> ChatAnswer:  # noqa: ARG002 - the protocol's
+        """Answer with a fault: whatever is not on the tape is not known."""
+        return ChatAnswer(fault=f"{self.name} is replayed: nobody is asked")
+
+
+class ModelDesk:
+    """Makes callers of models for a mission; its calls share a cache, a budget and a tape.
+
+    Args:
+        base_url: Where models of ``openai:…`` are; None for ``OPENAI_BASE_URL`` or OpenAI's own.
+        cache: Of answers that may be used again.
+        budget: Of all calls.
+        replay: A tape to take every answer from; no model is needed then.
+    """
+
+    def __init__(
+        self,
+        *,
+        base_url: str | None = None,
+        cache: AnswerCache | None = None,
+        budget: Budget | None = None,
+        replay: TapePlayer | None = None,
+    ) -> None:
+        self._base_url, self._cache, self._budget, self._player = base_url, cache, budget, replay
+        self._recorder: TapeRecorder | None = None
+        self._known: dict[str, KnownModel] = {}
+        # Weakly: a desk outlives many missions, and a tape is begun right after the callers of one were made.
+        self._callers: WeakSet[Caller] = WeakSet()
+
+    def prepare(self, names: Iterable[str]) -> tuple[KnownModel, ...]:
+        """Make the models among some names and find out, in a few short calls, what each can do.
+
+        A mission is not charged for these calls.
+
+        Raises:
+            SettingsError: If a name, an address or a key is wrong, or prices that a budget needs are not known.
+            RecordError: If a tape that is to be replayed holds no calls of a model.
+            MissingDependencyError: If an endpoint needs what is not installed.
+            PartError: If a model does not answer at all.
+        """
+        wanted = list(dict.fromkeys(name for name in names if is_model_name(name)))
+        for name in wanted:
+            if name not in self._known:
+                self._known[name] = self._look_into(name) if self._player is None else _taped(name, self._player)
+        known = tuple(self._known[name] for name in wanted)
+        if self._budget is not None and self._budget.usd is not None:
+            unpriced = [each.model.name for each in known if not each.priced]
+            if faults := faults_of_budget(self._budget.usd, self._budget.minutes, unpriced):
+                raise SettingsError("budget", faults)
+        return known
+
+    def _look_into(self, name: str) -> KnownModel:
+        model = openai_model(name, base_url=self._base_url)
+        abilities = run_live(lambda: probe(model))
+        if not abilities.answers:
+            raise PartError(name, f"it does not answer: {'; '.join(abilities.faults) or 'no reason given'}")
+        asked: OpenAIModel = model.asking(abilities.structure)
+        return KnownModel(asked, abilities, asked.price is not None)
+
+    def caller(self, name: str, clock: Clock, ledger: Ledger) -> Caller:
+        """Return who asks a model for a mission.
+
+        Raises:
+            InputError, PartError: As `prepare`.
+        """
+        (known,) = self.prepare([name])
+        tape = self._player or self._recorder
+        caller = Caller(known.model, clock=clock, ledger=ledger, cache=self._cache, tape=tape, budget=self._budget)
+        self._callers.add(caller)
+        return caller
+
+    def abilities(self, name: str) -> Abilities:
+        """Return what a model that is ready can do."""
+        return self._known[name].abilities
+
+    def record(self, path: Path, mission: Mapping[str, Any]) -> TapeRecorder:
+        """Write every call of the callers made so far to a tape from now on.
+
+        Args:
+            path: Of the tape.
+            mission: What the mission is: a replay is refused where it differs.
+
+        Raises:
+            RecordError: If there is such a file, or it cannot be made.
+        """
+        models = {
+            name: {"fingerprint": known.model.fingerprint, "abilities": asdict(known.abilities)}
+            for name, known in self._known.items()
+        }
+        self._recorder = TapeRecorder(path, about={"mission": dict(mission), "models": models})
+        for caller in self._callers:
+            caller.record_to(self._recorder)
+        return self._recorder
+
+    def check_replay(self, mission: Mapping[str, Any]) -> None:
+        """Check that a mission is the one that is on the tape.
+
+        Raises:
+            RecordError: With everything that is another.
+        """
+        if self._player is None:
+            return
+        taped: Mapping[str, Any] = self._player.about.get("mission", {})
+        faults = [
+            Fault(f"{key} is {mission.get(key)!r:.80}", f"{taped.get(key)!r:.80}, as on the tape")
+            for key in dict.fromkeys([*taped, *mission])
+            if taped.get(key) != mission.get(key)
+        ]
+        if faults:
+            raise RecordError("replay", faults)
+
+
+def _taped(name: str, player: TapePlayer) -> KnownModel:
+    about = player.about.get("models", {}).get(name)
+    try:
+        abilities = Abilities(**{**about["abilities"], "faults": tuple(about["abilities"].get("faults", ()))})
+        return KnownModel(_Taped(name, about["fingerprint"]), abilities, priced=True)
+    except (TypeError, KeyError) as error:
+        held = ", ".join(player.about.get("models", {})) or "none"
+        fault = Fault(f"no calls of {name} on the tape", f"one of those on it: {held}")
+        raise RecordError("replay", [fault]) from error
+
+
+def recording_faults(record: Path | None, replay: Path | None) -> list[Fault]:
+    """Return what is wrong with the tapes that were asked for, as far as can be told without opening them."""
+    faults = []
+    if record is not None and replay is not None:
+        faults.append(Fault("--record beside --replay", "one of the two"))
+    if record is not None and is_there(record):
+        faults.append(Fault(f"{record} is there already", "a name without a file", "give another name, or delete it"))
+    if replay is not None and not is_there(replay):
+        faults.append(Fault(f"there is no file {replay}", "a tape that --record wrote"))
+    return faults
+
+
+__all__ = ["KnownModel", "ModelDesk", "recording_faults"]
