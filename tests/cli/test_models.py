@@ -1,0 +1,175 @@
+"""`rex run --minds openai:…` and `rex minds check`, against a server of this machine that is no model (a fake)."""
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from reasoned_explorer.cli.app import app
+from reasoned_explorer.evaluation.record_file import read_record
+from reasoned_explorer.model.record import MissionEnd
+
+pytest.importorskip("openai")
+pytest.importorskip("aiohttp")
+
+from tests.calls.stub_server import FAULTS, Behaviour, StubServer
+
+KEY = "sk-planted-0123456789abcdef"
+FAST = ["--world", "plaza:3@200", "--seed", "1", "--no-map", "--t-max", "2"]
+
+
+def _sober(body: Mapping[str, Any]) -> str:
+    """Answer each form that is asked for: levels that follow from the question, and nothing is ever found."""
+    drawn = hashlib.sha256(json.dumps(body["messages"], sort_keys=True).encode()).digest()[0]
+    schema = (body.get("response_format") or {}).get("json_schema", {}).get("schema")
+    if schema is None:
+        return f"A path leads on between trees, {drawn} steps long."
+    answer: dict[str, Any] = {}
+    for name, each in schema["properties"].items():
+        if "enum" in each:
+            answer[name] = each["enum"][drawn % len(each["enum"])]
+        elif each["type"] == "boolean":
+            answer[name] = False
+        elif each["type"] in {"integer", "number"}:
+            low, high = each.get("minimum", 0), each.get("maximum", 1)
+            answer[name] = low + drawn % (high - low + 1) if each["type"] == "integer" else 0.5
+        else:
+            answer[name] = f"a path that leads on, {drawn} steps long"
+    return json.dumps(answer)
+
+
+@pytest.fixture(autouse=True)
+def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("OPENAI_API_KEY", KEY)
+    monkeypatch.delenv("OPENAI_BASE_URL", raising=False)
+
+
+@pytest.fixture
+def server() -> Iterator[StubServer]:
+    with StubServer(Behaviour(answer=_sober)) as running:
+        yield running
+
+
+def _rex(*arguments: str) -> tuple[int, str]:
+    result = CliRunner().invoke(app, list(arguments))
+    return result.exit_code, result.output + (result.stderr if result.stderr_bytes else "")
+
+
+def _run(*arguments: str, out: str = "run") -> tuple[int, str]:
+    return _rex("run", "Find me a bench", *FAST, "--minds", "openai:fake", "--out", out, *arguments)
+
+
+def test_a_mission_with_a_model_is_measured_and_replayed_without_it_bit_for_bit(tmp_path: Path) -> None:
+    with StubServer(Behaviour(answer=_sober)) as server:
+        code, shown = _run("--base-url", server.base_url, "--record", "calls.tape")
+        assert code == 1, shown
+        assert "[openai:fake]" in shown
+        assert "measured" in shown
+        url = server.base_url
+    # The server is gone; so is the key.
+    again_code, again = _run("--base-url", url, "--replay", "calls.tape", out="again")
+    assert again_code == 1, again
+    assert (tmp_path / "again" / "record.jsonl").read_bytes() == (tmp_path / "run" / "record.jsonl").read_bytes()
+
+
+def test_another_mission_is_not_on_the_tape(server: StubServer) -> None:
+    assert _run("--base-url", server.base_url, "--record", "calls.tape", "--t-max", "1")[0] == 1
+    told = len(server.received)
+    code, shown = _rex(
+        "run", "Find me a tree", *FAST, "--t-max", "1", "--minds", "openai:fake", "--replay", "calls.tape", "--out", "x"
+    )
+    assert code == 2
+    assert "goal is 'Find me a tree'" in shown
+    assert not Path("x").exists()
+    code, shown = _run("--minds", "openai:other", "--replay", "calls.tape", out="y")
+    assert code == 2
+    assert "no calls of openai:other on the tape" in shown
+    assert len(server.received) == told
+
+
+def test_one_role_may_be_a_models_and_the_others_embedded(server: StubServer) -> None:
+    code, shown = _rex(
+        "run", "Find me a bench", *FAST, "--evaluator", "openai:fake", "--base-url", server.base_url, "--out", "run"
+    )
+    assert code in {0, 1}, shown
+    record = read_record(Path("run"))
+    assert {call.model for step in record.steps for call in step.calls if call.role == "evaluator"} == {"openai:fake"}
+    assert "openai:fake" in record.header.minds
+    assert "embedded" in record.header.minds
+
+
+def test_a_spent_budget_ends_a_mission_cleanly(server: StubServer) -> None:
+    code, shown = _run("--base-url", server.base_url, "--budget-minutes", "0.0001")
+    assert code == 1, shown
+    summary = read_record(Path("run")).summary
+    assert summary is not None
+    assert summary.end is MissionEnd.BUDGET_SPENT
+
+
+def test_answers_are_taken_from_the_cache(server: StubServer) -> None:
+    arguments = ("--base-url", server.base_url, "--cache", "answers.sqlite", "--set", "depth=0")
+    assert _run(*arguments)[0] == 1
+    asked = len(server.received)
+    assert _run(*arguments, out="again")[0] == 1
+    first, again = (read_record(Path(name)) for name in ("run", "again"))
+    assert all(call.cached for step in again.steps for call in step.calls if call.model == "openai:fake")
+    assert len(server.received) - asked < 20  # what is asked to find out what it can do
+    assert [step.pose for step in again.steps] == [step.pose for step in first.steps]
+
+
+def test_a_model_that_fails_costs_answers_and_never_a_mission() -> None:
+    behaviour = Behaviour(answer=_sober, fault_share=0.2, faults=tuple(sorted(set(FAULTS) - {"hang"})))
+    with StubServer(behaviour) as server:
+        code, shown = _run("--base-url", server.base_url, "--t-max", "1")
+    assert code in {0, 1}, shown
+    record = read_record(Path("run"))
+    assert record.summary is not None
+    for step in record.steps:
+        for call in step.calls:
+            assert KEY not in (call.fault or "")
+
+
+def test_a_key_is_written_nowhere(tmp_path: Path) -> None:
+    behaviour = Behaviour(answer=_sober, script=("ok",) * 20 + ("401",) * 400)
+    with StubServer(behaviour) as server:
+        _, shown = _run("--base-url", server.base_url, "--record", "calls.tape", "--cache", "answers.sqlite")
+        _, checked = _rex("minds", "check", "openai:fake", "--base-url", server.base_url)
+    assert KEY not in shown + checked
+    for path in tmp_path.rglob("*"):
+        assert not path.is_file() or KEY.encode() not in path.read_bytes(), path
+
+
+def test_what_a_model_can_do_is_told_with_what_a_mission_takes(server: StubServer) -> None:
+    code, shown = _rex("minds", "check", "openai:fake", "--base-url", server.base_url)
+    assert code == 0, shown
+    for words in ("structured output    JSON schema", "log-probabilities", "median latency", "a mission of llm-rrt"):
+        assert words in shown
+    assert _rex("minds", "check", "embedded")[0] == 2
+
+
+def test_what_cannot_be_is_told_at_once_and_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, server: StubServer
+) -> None:
+    code, shown = _run("--clock", "virtual", "--record", "a", "--replay", "b", "--budget-usd", "-1")
+    assert code == 2
+    for words in ("a real call takes real seconds", "--record beside --replay", "there is no file b", "-1"):
+        assert words in shown
+    code, shown = _rex("run", "Find me a bench", *FAST, "--record", "a", "--captioner", "openai:fake", "--out", "x")
+    assert code == 2
+    assert "--record without a model" in shown
+    assert "takes no pictures yet" in shown
+    assert _run("--minds", "openai:", "--base-url", server.base_url)[0] == 2
+    monkeypatch.delenv("OPENAI_API_KEY")
+    code, shown = _run()
+    assert code == 2
+    assert "OPENAI_API_KEY" in shown
+    # Nobody listens there.
+    code, shown = _run("--base-url", "http://127.0.0.1:9/v1")
+    assert code == 3
+    assert "does not answer" in shown
+    assert list(tmp_path.iterdir()) == []
