@@ -119,6 +119,7 @@ class Behaviour:
         tells_logprobs: Whether log-probabilities are told where they are wanted.
         tells_usage: Whether tokens are counted.
         at_once: At most so many are worked on, the others wait; None for all.
+        together: Nobody is answered before so many are under way at the same time.
     """
 
     latency_s: float = 0.0
@@ -136,6 +137,7 @@ class Behaviour:
     tells_logprobs: bool = True
     tells_usage: bool = True
     at_once: int | None = None
+    together: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -228,6 +230,7 @@ class StubServer:
         await site.start()
         self._port = runner.addresses[0][1]
         at_once = self.behaviour.at_once
+        self._all_here = asyncio.Event()
         self._places = None if at_once is None else asyncio.Semaphore(at_once)
         return runner
 
@@ -248,6 +251,9 @@ class StubServer:
         self._under_way += 1
         self.most_at_once = max(self.most_at_once, self._under_way)
         try:
+            if self._under_way >= self.behaviour.together:
+                self._all_here.set()
+            await self._all_here.wait()
             if self._places is None:
                 await asyncio.sleep(self.behaviour.latency_s)
             else:

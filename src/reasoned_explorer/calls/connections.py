@@ -34,7 +34,10 @@ class Connection:
 
     def pacer(self, model: str, limits: Limits) -> Pacer:
         """Return the pacer of a model: everybody who asks it waits in the same line."""
-        return self._pacers.setdefault((model, limits), Pacer(limits))
+        pacer = self._pacers.get((model, limits))
+        if pacer is None:
+            pacer = self._pacers[model, limits] = Pacer(limits)
+        return pacer
 
     async def aclose(self) -> None:
         """Close the client."""
