@@ -37,7 +37,7 @@ def letters_tokenizer(template: str | None = _TEMPLATE) -> Any:
     return made
 
 
-def _text_settings(tokenizer: Any, positions: int = 1024) -> dict[str, Any]:
+def _text_settings(tokenizer: Any, positions: int = 4096) -> dict[str, Any]:
     return {
         "vocab_size": len(tokenizer),
         "hidden_size": 32,
@@ -65,7 +65,7 @@ def _saved(folder: Path, model: Any, *parts: Any) -> Path:
     return folder
 
 
-def make_text_model(folder: Path, *, template: str | None = _TEMPLATE, positions: int = 1024) -> Path:
+def make_text_model(folder: Path, *, template: str | None = _TEMPLATE, positions: int = 4096) -> Path:
     """A Llama of two layers."""
     import torch
     from transformers import LlamaConfig, LlamaForCausalLM
@@ -141,7 +141,7 @@ def make_kosmos_2(folder: Path) -> Path:
             "layers": 2,
             "ffn_dim": 64,
             "attention_heads": 4,
-            "max_position_embeddings": 256,
+            "max_position_embeddings": 512,
         },
         vision_config={
             "hidden_size": 32,
