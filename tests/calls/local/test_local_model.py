@@ -20,11 +20,11 @@ SEEING = ("kosmos-2", "idefics3", "smolvlm")
 TALKING = ("llama", "llama, no system", "llama, no template")
 
 
-def picture(number: int) -> bytes:
-    """A PNG of coarse patches, different for each number."""
+def picture(number: int, patch_px: int = 20) -> bytes:
+    """A PNG of sixteen patches, different for each number."""
     patches = np.random.default_rng(number).integers(0, 256, (4, 4, 3), dtype=np.uint8)
     file = io.BytesIO()
-    Image.fromarray(patches.repeat(20, axis=0).repeat(20, axis=1)).save(file, "PNG")
+    Image.fromarray(patches.repeat(patch_px, axis=0).repeat(patch_px, axis=1)).save(file, "PNG")
     return file.getvalue()
 
 
@@ -70,6 +70,13 @@ def test_what_is_said_depends_on_the_picture(local: Local, kind: str) -> None:
     one, other = ask(local(kind), [looked_at(number, top_logprobs=3) for number in (1, 2)])
     assert one.tokens_in == other.tokens_in
     assert not np.allclose(likelihoods(one)[:3], likelihoods(other)[:3], atol=1e-3)
+
+
+@pytest.mark.parametrize("kind", ["idefics3", "smolvlm"])
+def test_a_small_picture_is_not_cut_into_tiles(local: Local, kind: str) -> None:
+    small, large = [question(images=(picture(1, patch_px),)) for patch_px in (8, 20)]  # 32 pixels are one tile, 80 more
+    fewer, more = [ask(local(kind), [request])[0].tokens_in for request in (small, large)]
+    assert more - fewer > 16  # four tiles beside the whole, of four tokens each, and their marks
 
 
 @pytest.mark.parametrize("kind", TALKING)

@@ -91,7 +91,7 @@ def make_smolvlm(folder: Path, *, newer: bool) -> Path:
 
     tokenizer = letters_tokenizer()
     images = (SmolVLMImageProcessorPil if newer else Idefics3ImageProcessorPil)(
-        size={"longest_edge": 32}, max_image_size={"longest_edge": 32}, do_image_splitting=False
+        size={"longest_edge": 64}, max_image_size={"longest_edge": 32}, do_image_splitting=True
     )
     processor = Idefics3Processor(images, tokenizer, image_seq_len=4, chat_template=_TEMPLATE)
     config = (SmolVLMConfig if newer else Idefics3Config)(
