@@ -13,9 +13,9 @@ from PIL import Image
 from reasoned_explorer.calls.chat import ChatAnswer, ChatRequest
 from reasoned_explorer.calls.local import LocalModel, LocalSettings
 from reasoned_explorer.geometry import Pose
-from reasoned_explorer.model import Goal, PartError, Undescribed, View
+from reasoned_explorer.model import Goal, PartError, SettingsError, Undescribed, View
 from reasoned_explorer.perception.caption_prompt import caption_prompt
-from reasoned_explorer.perception.prompted import PromptedCaptioner
+from reasoned_explorer.perception.prompted import PromptedCaptioner, captioner_for
 
 GOAL = Goal("Find me a bench")
 
@@ -153,7 +153,8 @@ def test_kosmos_2_is_asked_in_its_own_way_and_all_others_in_words() -> None:
 @pytest.mark.parametrize("kind", ["kosmos-2", "idefics3", "smolvlm"])
 def test_a_model_on_this_machine_describes_a_look_in_one_batch(local: Callable[..., LocalModel], kind: str) -> None:
     model = local(kind, LocalSettings(most=4, linger_s=1.0))
-    captioner = PromptedCaptioner(model, name=model.name, prompt=caption_prompt(model.family), lossless=True)
+    captioner = captioner_for(model, model)
+    assert captioner.prompt == caption_prompt(kind)
     before = len(model.batches)
     told = described(captioner, [view(number, width=224, height=224) for number in range(4)])
     assert model.batches[before:] == [4]
@@ -161,3 +162,23 @@ def test_a_model_on_this_machine_describes_a_look_in_one_batch(local: Callable[.
     assert all(isinstance(text, str) and text for text in told)
     assert not any("<" in str(text) and "patch_index" in str(text) for text in told)
     assert len(set(told)) > 1
+
+
+def test_a_model_that_reads_text_only_is_refused_before_a_mission_begins(local: Callable[..., LocalModel]) -> None:
+    model = local("llama")
+    with pytest.raises(SettingsError, match="reads text only"):
+        captioner_for(model, model)
+
+
+def test_an_endpoint_is_asked_in_words_and_sent_packed_pictures() -> None:
+    @dataclass
+    class Endpoint(Answering):
+        name: str = "openai:eyes"
+        fingerprint: str = "eyes"
+        is_local: bool = False
+
+    model = Endpoint([ChatAnswer("a bench")])
+    described(captioner_for(model, model, temperature=0.5, seed=3), [view(1)])
+    (request,) = model.requests
+    assert (request.prompt, request.temperature, request.seed) == ("caption/1", 0.5, 3)
+    assert request.images[0].startswith(b"\xff\xd8")  # a JPEG

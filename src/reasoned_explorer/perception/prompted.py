@@ -9,8 +9,8 @@ from typing import Protocol
 import numpy as np
 from PIL import Image
 
-from reasoned_explorer.calls.chat import ChatAnswer, ChatRequest
-from reasoned_explorer.model import Goal, PartError, Undescribed, View
+from reasoned_explorer.calls.chat import ChatAnswer, ChatModel, ChatRequest
+from reasoned_explorer.model import Fault, Goal, PartError, SettingsError, Undescribed, View
 from reasoned_explorer.perception.caption_prompt import CaptionPrompt, caption_prompt
 
 _PART = "captioner"
@@ -90,6 +90,35 @@ class PromptedCaptioner:
             temperature=self._temperature,
             seed=self._seed,
         )
+
+
+def captioner_for(model: ChatModel, asker: Asker, *, temperature: float = 0.0, seed: int = 0) -> PromptedCaptioner:
+    """Return the captioner that shows pictures to a model, in the way that suits it.
+
+    Args:
+        model: At an endpoint, on this machine, or what stands for it where a tape is replayed. One on this machine says
+            its ``family`` and whether it ``sees``.
+        asker: Asks it: a `Caller` of it.
+        temperature: Of sampling.
+        seed: Of sampling.
+
+    Raises:
+        SettingsError: If the model is known to read no pictures.
+    """
+    family: str = getattr(model, "family", "")
+    if not getattr(model, "sees", True):
+        what = f"{model.name} reads text only"
+        raise SettingsError(
+            _PART, [Fault(what, "a model that reads pictures", "e.g. hf:HuggingFaceTB/SmolVLM-256M-Instruct")]
+        )
+    return PromptedCaptioner(
+        asker,
+        name=model.name,
+        prompt=caption_prompt(family),
+        lossless=bool(family),
+        temperature=temperature,
+        seed=seed,
+    )
 
 
 def encoded(view: View, *, lossless: bool) -> bytes:

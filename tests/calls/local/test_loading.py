@@ -66,12 +66,14 @@ def test_reading_the_package_loads_nothing_heavy() -> None:
     assert shown.stdout.strip() == "[]"
 
 
-@pytest.mark.parametrize("holds", ["nothing", "something else", "an unknown kind", "no weights"])
+@pytest.mark.parametrize("holds", ["nothing", "something else", "an unknown kind", "a translator", "no weights"])
 def test_a_folder_without_a_model_is_said_to_be_none(holds: str, tmp_path: Path, local: Local) -> None:
     if holds == "something else":
         (tmp_path / "notes.txt").write_text("no model")
     elif holds == "an unknown kind":
         (tmp_path / "config.json").write_text(json.dumps({"model_type": "crystal-ball"}))
+    elif holds == "a translator":
+        (tmp_path / "config.json").write_text(json.dumps({"model_type": "t5", "is_encoder_decoder": True}))
     elif holds == "no weights":
         tiny.make_text_model(tmp_path)
         (tmp_path / "model.safetensors").unlink()

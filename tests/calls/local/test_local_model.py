@@ -55,9 +55,10 @@ def test_views_are_captioned_in_one_batch_as_they_are_one_by_one(local: Local, k
     assert model.sees
     assert model.family == kind
     requests = [looked_at(number, top_logprobs=3) for number in range(3)]
+    before, before_singly = len(model.batches), len(singly.batches)
     together, apart = ask(model, requests), ask(singly, requests)
-    assert model.batches == [3]
-    assert singly.batches == [1, 1, 1]
+    assert model.batches[before:] == [3]
+    assert singly.batches[before_singly:] == [1, 1, 1]
     for one, other in zip(together, apart, strict=True):
         assert one.fault is None
         assert one.text == other.text != ""

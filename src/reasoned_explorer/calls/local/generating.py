@@ -40,11 +40,13 @@ class Generator:
         try:
             return self._generate(asked)
         except Exception as error:  # noqa: BLE001 - whatever a model does is an answer with a fault
-            # Too much for the memory together, or one broken picture that must not cost the others their answers.
-            if len(asked) > 1:
-                middle = len(asked) // 2
-                return self._answered(asked[:middle]) + self._answered(asked[middle:])
-            return [self._fault(f"{type(error).__name__}: {' '.join(str(error).split())[:200]}")]
+            fault = f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
+        # Out here the error is gone, and with it what it held of the device's memory.
+        if len(asked) == 1:
+            return [self._fault(fault)]
+        # Too much for the memory together, or one broken picture that must not cost the others their answers.
+        middle = len(asked) // 2
+        return self._answered(asked[:middle]) + self._answered(asked[middle:])
 
     def _fault(self, fault: str) -> ChatAnswer:
         return ChatAnswer(fault=fault, model=self._name)
@@ -96,11 +98,13 @@ class Generator:
         )
 
     def _moved(self, inputs: Mapping[str, Any]) -> dict[str, Any]:
-        model = self.model
-        return {
-            name: value.to(model.device, model.dtype) if value.is_floating_point() else value.to(model.device)
-            for name, value in inputs.items()
-        }
+        import torch
+
+        moved = dict(inputs)
+        for name, value in inputs.items():
+            if isinstance(value, torch.Tensor):
+                moved[name] = value.to(self.model.device, self.model.dtype if value.is_floating_point() else None)
+        return moved
 
     def _told(
         self, job: Job, row: list[int], tokens_in: int, choices: Sequence[Sequence[tuple[int, float]]]

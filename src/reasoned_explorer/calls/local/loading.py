@@ -135,6 +135,8 @@ def _loaded(name: str, source: _Source, settings: LocalSettings) -> LocalModel:
     device = torch.device(settings.device or _best_device())
     dtype = getattr(torch, settings.dtype or _best_dtype(device.type))
     config = source.read(AutoConfig)
+    if getattr(config, "is_encoder_decoder", False):
+        raise ValueError(f"{config.model_type} is a model that translates one text into another; it cannot be asked")
     family, sees = str(config.model_type), type(config) in MODEL_FOR_IMAGE_TEXT_TO_TEXT_MAPPING
     coder: Coder
     if not sees:
