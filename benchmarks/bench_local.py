@@ -3,7 +3,8 @@
 Run it with ``python benchmarks/bench_local.py`` (needs the extra ``local``); nothing is asserted. The model has the
 shape of SmolVLM-256M or of Kosmos-2, and random weights: the time is that of the real one, what it says is not. All
 answers have the same number of tokens. ``--device cuda`` measures a graphics card. Seconds are the best of the
-repeats, real ones and, where the card is not used, of the processor, which count on a busy machine.
+repeats: real ones, and of the processor. On a busy machine believe the latter, with ``OMP_NUM_THREADS=1``: threads
+that wait for each other burn seconds, too.
 """
 
 import argparse
