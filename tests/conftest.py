@@ -13,6 +13,9 @@ settings.load_profile("house")
 # What a shell starts in the background ignores Ctrl-C, and so would all that tests start.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
+# Tiny models for the tests of calls and of perception.
+pytest_plugins = ["tests.calls.local.models"]
+
 SHARED = Path(__file__).resolve().parents[1] / ".." / "shared"
 
 

@@ -8,7 +8,7 @@ from reasoned_explorer.clock import Clock, VirtualClock
 from reasoned_explorer.exploration.explorer import Exploration, Explorer, Parts
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
-from reasoned_explorer.model import Goal, Leg, LegOutcome, PartError, Scene, TrackPoint, Verdict, View
+from reasoned_explorer.model import Goal, Leg, LegOutcome, PartError, Scene, TrackPoint, Undescribed, Verdict, View
 from reasoned_explorer.model.record import MissionEnd, StepRecord
 from reasoned_explorer.planning import FrontierScore, Plan
 from reasoned_explorer.vehicles import PROFILES, Vehicle, VehicleProfile
@@ -61,12 +61,16 @@ class FakeCaptioner:
     name: str = "fake"
     label: str = "fake captioner"
     broken: bool = False
+    lost: frozenset[int] = frozenset()  # these views of each look are not described
 
-    async def describe(self, goal: Goal, views: Sequence[View]) -> Sequence[str]:
+    async def describe(self, goal: Goal, views: Sequence[View]) -> Sequence[str | Undescribed]:
         await self.clock.think(2.0)
         if self.broken:
             raise PartError("captioner", "no answer")
-        return [f"at {view.pose.x_m:.0f}, {view.pose.y_m:.0f}" for view in views]
+        return [
+            Undescribed("refused") if index in self.lost else f"at {view.pose.x_m:.0f}, {view.pose.y_m:.0f}"
+            for index, view in enumerate(views)
+        ]
 
 
 @dataclass

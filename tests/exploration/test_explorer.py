@@ -127,6 +127,21 @@ def test_missing_answers_never_become_scores() -> None:
     assert all("no answer" in (view.plan_fault or "") for step in plane.steps for view in step.views)
 
 
+def test_a_view_that_is_not_described_is_left_out_and_the_step_goes_on_with_the_others() -> None:
+    plane = Plane()
+    plane.captioner.lost = frozenset({1})
+    asked: list[int] = []
+    plane.checker.rule = lambda scene: asked.append(scene.key[2]) is not None
+    plane.planner.rule = lambda scene: FrontierScore(None if scene.fault else 3.0, fault=scene.fault)
+    ended = plane.run()
+    assert ended.end is MissionEnd.TIME_OVER  # it is no fault of the step, though each step has one
+    views = plane.steps[0].views
+    assert [view.caption_fault for view in views] == [None, "refused", None]
+    assert [view.q for view in views] == [3.0, None, 3.0]
+    assert 1 not in asked
+    assert "view 1 is not described: refused" in plane.steps[0].notes
+
+
 def test_the_step_budget_ends_a_mission() -> None:
     plane = Plane(ExplorerSettings(max_steps=3))
     ended = plane.run()

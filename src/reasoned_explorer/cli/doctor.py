@@ -45,6 +45,14 @@ PARTS = (
     Part("rich", "rich", "progress"),
     Part("pyarrow", "pyarrow", "results as Parquet", "pip install 'reasoned-explorer[parquet]'", core=False),
     Part("ray", "ray", "a benchmark on a cluster", "pip install 'reasoned-explorer[ray]'", core=False),
+    Part("torch", "torch", "models on this machine, hf:NAME", "pip install 'reasoned-explorer[local]'", core=False),
+    Part(
+        "transformers",
+        "transformers",
+        "models on this machine, hf:NAME",
+        "pip install 'reasoned-explorer[local]'",
+        core=False,
+    ),
     Part(
         "tokenizers",
         "tokenizers",

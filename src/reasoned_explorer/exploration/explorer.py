@@ -13,7 +13,7 @@ from reasoned_explorer.exploration.graph import Choice, Frontier, FrontierState,
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose, normalise_heading_rad
 from reasoned_explorer.minds.mind import GoalChecker
-from reasoned_explorer.model import Goal, LegOutcome, PartError, Scene, Verdict, View
+from reasoned_explorer.model import Goal, LegOutcome, PartError, Scene, Undescribed, Verdict, View
 from reasoned_explorer.model.record import CallKept, MissionEnd, StepRecord
 from reasoned_explorer.perception import Captioner
 from reasoned_explorer.planning import FrontierScore, Plan, Planner
@@ -232,18 +232,27 @@ class Explorer:
         return look
 
     async def _describe(self, goal: Goal, views: Sequence[View], step: StepDraft) -> list[Scene]:
-        texts: Sequence[str]
-        fault_text = None
+        told: Sequence[str | Undescribed]
         try:
-            texts = await self.parts.captioner.describe(goal, views)
+            told = await self.parts.captioner.describe(goal, views)
+            # The step is sound: it goes on with the views that are described.
+            missing = [(index, one) for index, one in enumerate(told) if isinstance(one, Undescribed)]
+            step.notes.extend(f"view {index} is not described: {one.fault}" for index, one in missing)
         except PartError as fault:
             self._note_fault(step, fault)
-            texts, fault_text = [""] * len(views), str(fault)
+            told = [Undescribed(str(fault))] * len(views)
         nominal_m = self.settings.step_range_m(goal.level)[0]
         number = len(step.looks)
         return [
-            Scene(text, (step.step, number, index), view.pose.ahead(nominal_m), 0, fault_text, view.pose)
-            for index, (view, text) in enumerate(zip(views, texts, strict=True))
+            Scene(
+                "" if isinstance(one, Undescribed) else one,
+                (step.step, number, index),
+                view.pose.ahead(nominal_m),
+                0,
+                one.fault if isinstance(one, Undescribed) else None,
+                view.pose,
+            )
+            for index, (view, one) in enumerate(zip(views, told, strict=True))
         ]
 
     async def _plan(self, goal: Goal, scenes: Sequence[Scene], step: StepDraft) -> Plan:

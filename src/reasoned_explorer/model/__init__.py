@@ -18,7 +18,7 @@ from reasoned_explorer.model.errors import (
 )
 from reasoned_explorer.model.goal import Goal
 from reasoned_explorer.model.track import Leg, LegOutcome, TrackPoint
-from reasoned_explorer.model.view import Camera, Scene, View
+from reasoned_explorer.model.view import Camera, Scene, Undescribed, View
 
 __all__ = [
     "LIKERT_LEVELS",
@@ -40,6 +40,7 @@ __all__ = [
     "SettingsError",
     "StartError",
     "TrackPoint",
+    "Undescribed",
     "UnknownNameError",
     "Verdict",
     "View",

@@ -41,6 +41,17 @@ class View:
 
 
 @dataclass(frozen=True, slots=True)
+class Undescribed:
+    """What stands for the description of a view that has none.
+
+    Attributes:
+        fault: Why.
+    """
+
+    fault: str
+
+
+@dataclass(frozen=True, slots=True)
 class Scene:
     """What a view is said to show, or what is imagined beyond it: text, and where it belongs.
 

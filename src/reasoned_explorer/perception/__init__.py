@@ -1,4 +1,4 @@
-"""From pictures to words: the `Captioner` protocol and its registry."""
+"""From pictures to words: the `Captioner` protocol, its registry, and captioners that show pictures to a model."""
 
 from reasoned_explorer.perception.captioner import Captioner
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Protocol
 
-from reasoned_explorer.model import Goal, View
+from reasoned_explorer.model import Goal, Undescribed, View
 
 
 class Captioner(Protocol):
@@ -17,12 +17,12 @@ class Captioner(Protocol):
     name: str
     label: str
 
-    async def describe(self, goal: Goal, views: Sequence[View]) -> Sequence[str]:
-        """Return one description per view, in the views' order.
+    async def describe(self, goal: Goal, views: Sequence[View]) -> Sequence[str | Undescribed]:
+        """Return one description per view, in the views' order, or why there is none.
 
         All views of one call are described together; time passes on the clock that the captioner was made with.
 
         Raises:
-            PartError: If no description can be had. The agent goes on without this look.
+            PartError: If no view can be described. The agent goes on without this look.
         """
         ...
