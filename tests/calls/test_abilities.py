@@ -6,8 +6,8 @@ from collections.abc import Callable
 import pytest
 from PIL import Image
 
-from reasoned_explorer.calls.abilities import ANY_OBJECT, Abilities, probe
-from reasoned_explorer.calls.chat import ChatAnswer, ChatRequest, TokenChoice
+from reasoned_explorer.calls.abilities import Abilities, probe
+from reasoned_explorer.calls.chat import ANY_OBJECT, ChatAnswer, ChatRequest, TokenChoice
 from reasoned_explorer.clock import VirtualClock
 
 

@@ -1,4 +1,4 @@
-"""A model on this machine behind a caller: each view a call of its own, a look a batch, and the same again from a tape."""
+"""A model on this machine behind a caller: a view is a call, a look a batch, and a tape gives the same again."""
 
 import asyncio
 from collections.abc import Callable, Sequence

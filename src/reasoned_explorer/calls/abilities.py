@@ -9,16 +9,14 @@ import io
 import json
 import math
 import statistics
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from PIL import Image
 
-from reasoned_explorer.calls.chat import ChatAnswer, ChatModel, ChatRequest
+from reasoned_explorer.calls.chat import ANY_OBJECT, ChatAnswer, ChatModel, ChatRequest
 
-#: As a request's schema it asks for any JSON object (``json_object``), not for one of a certain shape.
-ANY_OBJECT: dict[str, object] = {"type": "object"}
 #: So many alternatives are asked for at each place: the five levels, each with and without a space before it.
 TOP_LOGPROBS = 10
 
@@ -142,7 +140,7 @@ _SCHEMA: dict[str, object] = {
 
 
 def _request(
-    user: str, key: int, *, schema: dict[str, object] | None = None, top: int = 0, image: bytes | None = None
+    user: str, key: int, *, schema: Mapping[str, Any] | None = None, top: int = 0, image: bytes | None = None
 ) -> ChatRequest:
     return ChatRequest(
         role="probe",

@@ -97,8 +97,10 @@ class ChatModel(Protocol):
         ...
 
 
-#: What the name of a model begins with; what follows is the model's name where it is served.
-MODEL_PREFIXES = ("openai:",)
+#: As a request's schema it asks for any JSON object, not for one of a certain shape.
+ANY_OBJECT: Mapping[str, Any] = {"type": "object"}
+#: What the name of a model begins with; what follows is its name where it is served, or on a hub, or a folder.
+MODEL_PREFIXES = ("openai:", "hf:")
 
 
 def is_model_name(name: str) -> bool:

@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from reasoned_explorer.calls.chat import ChatRequest, TokenChoice
+from reasoned_explorer.calls.chat import ANY_OBJECT, ChatRequest, TokenChoice
 from reasoned_explorer.calls.endpoint import Structure
 
 _SHOWN = 160  # characters of a server's text in a fault
@@ -129,7 +129,7 @@ def parameters(
 
 
 def _response_format(schema: Mapping[str, Any], structure: Structure, role: str) -> dict[str, Any]:
-    if structure == "json_object":
+    if structure == "json_object" or schema == ANY_OBJECT:
         return {"type": "json_object"}
     return {"type": "json_schema", "json_schema": {"name": role or "answer", "strict": True, "schema": dict(schema)}}
 

@@ -12,11 +12,14 @@ from reasoned_explorer.calls.cache import AnswerCache
 from reasoned_explorer.calls.caller import Caller
 from reasoned_explorer.calls.chat import ChatAnswer, ChatModel, ChatRequest, is_model_name
 from reasoned_explorer.calls.ledger import Ledger
-from reasoned_explorer.calls.openai_model import OpenAIModel, openai_model
+from reasoned_explorer.calls.openai_model import openai_model
 from reasoned_explorer.calls.tape import TapePlayer, TapeRecorder
 from reasoned_explorer.clock import Clock, run_live
 from reasoned_explorer.model import Fault, PartError, RecordError, SettingsError
 from reasoned_explorer.model.checks import is_there
+
+#: Of models on this machine.
+LOCAL_PREFIX = "hf:"
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,12 +95,14 @@ class ModelDesk:
         return known
 
     def _look_into(self, name: str) -> KnownModel:
+        if name.startswith(LOCAL_PREFIX):
+            from reasoned_explorer.calls.local import load_local
+
+            local = load_local(name)
+            return KnownModel(local, _found_out(local, together=2), priced=True)
         model = openai_model(name, base_url=self._base_url)
-        abilities = run_live(lambda: probe(model))
-        if not abilities.answers:
-            raise PartError(name, f"it does not answer: {'; '.join(abilities.faults) or 'no reason given'}")
-        asked: OpenAIModel = model.asking(abilities.structure)
-        return KnownModel(asked, abilities, asked.price is not None)
+        abilities = _found_out(model)
+        return KnownModel(model.asking(abilities.structure), abilities, model.price is not None)
 
     def caller(self, name: str, clock: Clock, ledger: Ledger) -> Caller:
         """Return who asks a model for a mission.
@@ -150,6 +155,13 @@ class ModelDesk:
         ]
         if faults:
             raise RecordError("replay", faults)
+
+
+def _found_out(model: ChatModel, *, together: int = 8) -> Abilities:
+    abilities = run_live(lambda: probe(model, together=together))
+    if not abilities.answers:
+        raise PartError(model.name, f"it does not answer: {'; '.join(abilities.faults) or 'no reason given'}")
+    return abilities
 
 
 def _taped(name: str, player: TapePlayer) -> KnownModel:

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from reasoned_explorer.calls.abilities import ANY_OBJECT, Abilities
-from reasoned_explorer.calls.chat import ChatAnswer, ChatRequest
+from reasoned_explorer.calls.abilities import Abilities
+from reasoned_explorer.calls.chat import ANY_OBJECT, ChatAnswer, ChatRequest
 from reasoned_explorer.clock import VirtualClock
 from reasoned_explorer.minds.context import Minds
 from reasoned_explorer.minds.prompted import PromptedMinds, PromptedSettings, prompted_minds

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-from reasoned_explorer.calls.abilities import ANY_OBJECT, Abilities
-from reasoned_explorer.calls.chat import ChatAnswer, ChatRequest
+from reasoned_explorer.calls.abilities import Abilities
+from reasoned_explorer.calls.chat import ANY_OBJECT, ChatAnswer, ChatRequest
 from reasoned_explorer.minds.context import Minds
 from reasoned_explorer.minds.prompted.chances import level_chances, yes_chance
 from reasoned_explorer.minds.prompted.prompt import ROLES, Form, Prompt, load_prompt
