@@ -19,9 +19,10 @@ def _blocks(language: str) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```", README, flags=re.DOTALL | re.MULTILINE)
 
 
-def _rex_commands() -> list[str]:
+def _rex_commands(*, with_models: bool = False) -> list[str]:
     lines = [line for block in _blocks("sh") for line in block.splitlines()]
-    return [line.split("#")[0].strip() for line in lines if line.startswith("rex ")]
+    commands = [line.split("#")[0].strip() for line in lines if line.startswith("rex ")]
+    return [command for command in commands if ("openai:" in command) == with_models]
 
 
 def test_there_is_something_to_test() -> None:
@@ -35,6 +36,21 @@ def test_the_commands_work_one_after_the_other(tmp_path: Path, monkeypatch: pyte
         result = CliRunner().invoke(app, shlex.split(command)[1:])
         # A mission may end without finding its goal; anything else is a command that does not work.
         assert result.exit_code in (0, 1), f"{command}\n{result.output}"
+
+
+def test_the_commands_with_a_model_work_where_a_model_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("openai")
+    pytest.importorskip("aiohttp")
+    from tests.calls.stub_server import Behaviour, StubServer, sober
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("OPENAI_API_KEY", "sk-planted")
+    with StubServer(Behaviour(answer=sober)) as server:
+        monkeypatch.setenv("OPENAI_BASE_URL", server.base_url)
+        for command in _rex_commands(with_models=True):
+            typed = command.replace("http://localhost:8000/v1", server.base_url)
+            result = CliRunner().invoke(app, shlex.split(typed)[1:])
+            assert result.exit_code in (0, 1), f"{command}\n{result.output}"
 
 
 def test_the_python_example_works(tmp_path: Path) -> None:

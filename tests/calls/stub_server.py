@@ -386,6 +386,26 @@ def _instance(schema: Mapping[str, Any], number: int) -> Any:
             return f"word {number}"
 
 
+def sober(body: Mapping[str, Any]) -> str:
+    """Answer each form that is asked for: levels that follow from the question, and nothing is ever found."""
+    drawn = hashlib.sha256(json.dumps(body["messages"], sort_keys=True).encode()).digest()[0]
+    schema = (body.get("response_format") or {}).get("json_schema", {}).get("schema")
+    if schema is None:
+        return f"A path leads on between trees, {drawn} steps long."
+    answer: dict[str, Any] = {}
+    for name, each in schema["properties"].items():
+        if "enum" in each:
+            answer[name] = each["enum"][drawn % len(each["enum"])]
+        elif each["type"] == "boolean":
+            answer[name] = False
+        elif each["type"] in {"integer", "number"}:
+            low, high = each.get("minimum", 0), each.get("maximum", 1)
+            answer[name] = low + drawn % (high - low + 1) if each["type"] == "integer" else 0.5
+        else:
+            answer[name] = f"a path that leads on, {drawn} steps long"
+    return json.dumps(answer)
+
+
 def _place(word: str, count: int) -> dict[str, Any]:
     told = [{"token": f"{word}{rank if rank else ''}", "logprob": -0.1 - rank} for rank in range(count)]
     return {"token": word, "logprob": -0.1, "bytes": None, "top_logprobs": told}

@@ -1,10 +1,7 @@
 """`rex run --minds openai:…` and `rex minds check`, against a server of this machine that is no model (a fake)."""
 
-import hashlib
-import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 from typer.testing import CliRunner
@@ -16,30 +13,10 @@ from reasoned_explorer.model.record import MissionEnd
 pytest.importorskip("openai")
 pytest.importorskip("aiohttp")
 
-from tests.calls.stub_server import FAULTS, Behaviour, StubServer
+from tests.calls.stub_server import FAULTS, Behaviour, StubServer, sober
 
 KEY = "sk-planted-0123456789abcdef"
 FAST = ["--world", "plaza:3@200", "--seed", "1", "--no-map", "--t-max", "2"]
-
-
-def _sober(body: Mapping[str, Any]) -> str:
-    """Answer each form that is asked for: levels that follow from the question, and nothing is ever found."""
-    drawn = hashlib.sha256(json.dumps(body["messages"], sort_keys=True).encode()).digest()[0]
-    schema = (body.get("response_format") or {}).get("json_schema", {}).get("schema")
-    if schema is None:
-        return f"A path leads on between trees, {drawn} steps long."
-    answer: dict[str, Any] = {}
-    for name, each in schema["properties"].items():
-        if "enum" in each:
-            answer[name] = each["enum"][drawn % len(each["enum"])]
-        elif each["type"] == "boolean":
-            answer[name] = False
-        elif each["type"] in {"integer", "number"}:
-            low, high = each.get("minimum", 0), each.get("maximum", 1)
-            answer[name] = low + drawn % (high - low + 1) if each["type"] == "integer" else 0.5
-        else:
-            answer[name] = f"a path that leads on, {drawn} steps long"
-    return json.dumps(answer)
 
 
 @pytest.fixture(autouse=True)
@@ -51,7 +28,7 @@ def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
 
 @pytest.fixture
 def server() -> Iterator[StubServer]:
-    with StubServer(Behaviour(answer=_sober)) as running:
+    with StubServer(Behaviour(answer=sober)) as running:
         yield running
 
 
@@ -65,7 +42,7 @@ def _run(*arguments: str, out: str = "run") -> tuple[int, str]:
 
 
 def test_a_mission_with_a_model_is_measured_and_replayed_without_it_bit_for_bit(tmp_path: Path) -> None:
-    with StubServer(Behaviour(answer=_sober)) as server:
+    with StubServer(Behaviour(answer=sober)) as server:
         code, shown = _run("--base-url", server.base_url, "--record", "calls.tape")
         assert code == 1, shown
         assert "[openai:fake]" in shown
@@ -123,7 +100,7 @@ def test_answers_are_taken_from_the_cache(server: StubServer) -> None:
 
 
 def test_a_model_that_fails_costs_answers_and_never_a_mission() -> None:
-    behaviour = Behaviour(answer=_sober, fault_share=0.2, faults=tuple(sorted(set(FAULTS) - {"hang"})))
+    behaviour = Behaviour(answer=sober, fault_share=0.2, faults=tuple(sorted(set(FAULTS) - {"hang"})))
     with StubServer(behaviour) as server:
         code, shown = _run("--base-url", server.base_url, "--t-max", "1")
     assert code in {0, 1}, shown
@@ -135,7 +112,7 @@ def test_a_model_that_fails_costs_answers_and_never_a_mission() -> None:
 
 
 def test_a_key_is_written_nowhere(tmp_path: Path) -> None:
-    behaviour = Behaviour(answer=_sober, script=("ok",) * 20 + ("401",) * 400)
+    behaviour = Behaviour(answer=sober, script=("ok",) * 20 + ("401",) * 400)
     with StubServer(behaviour) as server:
         _, shown = _run("--base-url", server.base_url, "--record", "calls.tape", "--cache", "answers.sqlite")
         _, checked = _rex("minds", "check", "openai:fake", "--base-url", server.base_url)

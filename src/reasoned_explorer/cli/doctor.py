@@ -114,7 +114,7 @@ def print_report() -> None:
         missing_core += part.core
         say(f"  {'MISSING' if part.core else 'optional'}  {part.package}: {part.purpose}; get it with: {part.command}")
     say(_minds_line())
-    say("not there yet: language models over HTTP, pictures, AirSim, MAVLink, Unitree, ROS 2, the web page")
+    say("not there yet: pictures, AirSim, MAVLink, Unitree, ROS 2, the web page")
     if missing_core:
         say(f"{missing_core} needed packages are missing")
 

@@ -124,7 +124,7 @@ def lines_about(known: KnownModel) -> list[str]:
     calls = sum(count for count, _, _ in _STEP_CALLS.values())
     minutes = _STEPS * max(_ROUNDS, calls / able.parallel) * able.latency_s / 60.0
     price = getattr(known.model, "price", None)
-    usd = None
+    usd = 0.0 if known.model.is_local else None
     if price is not None:
         usd = _STEPS * sum(count * price.usd(sent, got) for count, sent, got in _STEP_CALLS.values())
     row_usd = None if usd is None else usd * _MINI

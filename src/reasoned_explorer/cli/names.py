@@ -21,6 +21,10 @@ _ROWS = (
     Entry("X:depth=1", "", "planner X with settings of its own"),
     Entry("X@A/B", "", "planner X with A as visionary and B as evaluator"),
 )
+_MODEL_FORMS = (
+    Entry("openai:MODEL", "", "a language model behind an OpenAI-compatible endpoint (--base-url)"),
+    Entry("hf:NAME", "", "a language model on this machine: a name on the Hugging Face hub, or a folder"),
+)
 _WORLD_FORMS = (
     Entry("X:7@600", "", "district X from seed 7, 600 m across"),
     Entry("X.osm.pbf", "", "a real place: .osm, .osm.gz, .osm.bz2, .osm.pbf; or a kept world: .rexworld"),
@@ -53,6 +57,8 @@ def print_names() -> None:
             _print(console, "rows of rex bench --planners beside these", _ROWS)
             groups = tuple(Entry(name, "", ", ".join(_shown(names))) for name, names in GROUPS.items())
             _print(console, "groups of rex bench --planners", groups)
+        if registry is MINDS:
+            _print(console, "models as minds", _MODEL_FORMS)
     districts = tuple(Entry(name, "", summary) for name, summary in DISTRICTS.items())
     _print(console, "worlds", (*districts, *WORLDS.entries(), *_WORLD_FORMS))
     _print(
