@@ -315,7 +315,7 @@ class StubServer:
         completion = self._completion(body)
         if word == "truncated json":
             return web.Response(text=json.dumps(completion)[:-40], content_type="application/json")
-        _MARS.get(word, lambda _: None)(completion)
+        _MARS.get(word, _unspoiled)(completion)
         return web.json_response(completion)
 
     async def _half(self, request: web.Request, whole: bytes) -> web.StreamResponse:
@@ -439,6 +439,10 @@ _ERRORS: dict[str, Callable[[web.Request], web.Response]] = {
     "404": lambda _: _error(404, "The model does not exist", code="model_not_found"),
     "redirect": lambda request: web.Response(status=307, headers={"location": str(request.url.with_host("localhost"))}),
 }
+
+
+def _unspoiled(_completion: dict[str, Any]) -> None:
+    pass
 
 
 def _mar(**message: Any) -> Callable[[dict[str, Any]], None]:

@@ -11,6 +11,7 @@ from reasoned_explorer.calls.budget import Budget, faults_of_budget
 from reasoned_explorer.calls.cache import AnswerCache
 from reasoned_explorer.calls.caller import Caller
 from reasoned_explorer.calls.chat import ChatAnswer, ChatModel, ChatRequest, is_model_name
+from reasoned_explorer.calls.endpoint import AskingSettings
 from reasoned_explorer.calls.ledger import Ledger
 from reasoned_explorer.calls.openai_model import openai_model
 from reasoned_explorer.calls.tape import TapePlayer, TapeRecorder
@@ -56,6 +57,8 @@ class ModelDesk:
         cache: Of answers that may be used again.
         budget: Of all calls.
         replay: A tape to take every answer from; no model is needed then.
+        asking: How endpoints are asked.
+        known: Models that another desk has looked into.
     """
 
     def __init__(
@@ -65,10 +68,13 @@ class ModelDesk:
         cache: AnswerCache | None = None,
         budget: Budget | None = None,
         replay: TapePlayer | None = None,
+        asking: AskingSettings | None = None,
+        known: Iterable[KnownModel] = (),
     ) -> None:
         self._base_url, self._cache, self._budget, self._player = base_url, cache, budget, replay
         self._recorder: TapeRecorder | None = None
-        self._known: dict[str, KnownModel] = {}
+        self._asking = asking
+        self._known = {each.model.name: each for each in known}
         # Weakly: a desk outlives many missions, and a tape is begun right after the callers of one were made.
         self._callers: WeakSet[Caller] = WeakSet()
 
@@ -100,7 +106,7 @@ class ModelDesk:
 
             local = load_local(name)
             return KnownModel(local, _found_out(local, together=2), priced=True)
-        model = openai_model(name, base_url=self._base_url)
+        model = openai_model(name, base_url=self._base_url, settings=self._asking)
         abilities = _found_out(model)
         return KnownModel(model.asking(abilities.structure), abilities, model.price is not None)
 
