@@ -153,6 +153,12 @@ def test_minds_that_read_the_truth_make_a_bound_of_a_method() -> None:
     assert label_of([halted]).startswith("random [no model; a mind knows the world, a bound]")
 
 
+def test_a_planner_without_a_model_says_so_where_a_model_halts_it() -> None:
+    row = replace(made_row("random"), planner="random [no model]", minds="openai:gpt-4o-mini")
+    assert label_of([row]).startswith("random [no model; openai:gpt-4o-mini checks]")
+    assert label_of([replace(row, minds="embedded minds")]).startswith("random [no model]")
+
+
 def test_vehicles_stand_side_by_side() -> None:
     walked = [replace(row, score=replace(row.score, vehicle="go1")) for row in _method("random", 2)]
     flown = Results.of([*_method("llm-rrt", 3), *_method("random", 1)], ())

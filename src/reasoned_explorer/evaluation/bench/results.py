@@ -4,6 +4,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 
+from reasoned_explorer.calls.chat import is_model_name
 from reasoned_explorer.evaluation.methods import BOUND_METHODS, PERFECT_HALT, method
 from reasoned_explorer.evaluation.metrics import Metric, MetricTable, aggregate, compare, headroom_closed
 from reasoned_explorer.evaluation.row import MissionRow
@@ -161,6 +162,9 @@ def what_of(rows: Sequence[MissionRow]) -> tuple[str, str]:
     row = next((row for row in rows if row.ct_label), rows[0])
     _, _, minds = row.planner.partition("[")
     notes = [minds.rstrip("]")] if minds and row.method not in BOUND_METHODS else []
+    checker = row.minds.rpartition("checker: ")[2]
+    if notes and _NO_MODEL in row.planner and is_model_name(checker):
+        notes.append(f"{checker} checks")
     if row.method in BOUND_METHODS:
         notes.append("a bound: knows the world")
     elif row.method.endswith(f"+{PERFECT_HALT}"):
