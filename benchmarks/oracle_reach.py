@@ -35,7 +35,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=10, help="missions a world, levels 1 to 4 in turn")
     parser.add_argument("--views", type=int, default=24, help="headings a look, over a full circle above 3")
     parser.add_argument("--step-min", type=float, default=2.0, help="shortest step, metres")
-    parser.add_argument("--step-max", type=float, default=12.0, help="longest step, metres")
+    parser.add_argument("--step-max", type=float, default=9.0, help="longest step, metres")
     parser.add_argument("--vehicle", default="drone")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
