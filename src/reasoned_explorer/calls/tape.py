@@ -9,7 +9,6 @@ import json
 import math
 from collections import defaultdict, deque
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import asdict, dataclass, fields
 from enum import StrEnum
 from pathlib import Path
@@ -22,7 +21,7 @@ from reasoned_explorer.calls.chat import ChatAnswer, ChatRequest
 from reasoned_explorer.calls.secrets import scrub
 from reasoned_explorer.calls.stored import RequestParts, answer_as_json, parts_of
 from reasoned_explorer.model.checks import path_of
-from reasoned_explorer.model.disk import disk_error, in_words
+from reasoned_explorer.model.disk import append_line, disk_error, in_words
 from reasoned_explorer.model.errors import Fault, RecordError, RecordWriteError
 
 #: Version of the format; a tape of another one is refused.
@@ -134,18 +133,11 @@ class TapeRecorder:
             self._file.close()
 
     def _line(self, content: Mapping[str, Any]) -> None:
-        line = memoryview(scrub(json.dumps(content, separators=(",", ":"))).encode() + b"\n")
-        rest = line
+        line = scrub(json.dumps(content, separators=(",", ":"))).encode() + b"\n"
         try:
-            while rest:
-                rest = rest[self._file.write(rest) :]
+            self._whole_bytes = append_line(self._file, line, self._whole_bytes)
         except OSError as error:
-            # Making a file shorter takes no room.
-            with suppress(OSError):
-                self._file.truncate(self._whole_bytes)
-                self._file.seek(self._whole_bytes)
             raise RecordWriteError(f"tape: {in_words(self.path, error)}") from error
-        self._whole_bytes += len(line)
 
 
 class TapePlayer:

@@ -15,7 +15,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from reasoned_explorer.model import Fault, RecordError, RecordWriteError
 from reasoned_explorer.model.checks import path_of
-from reasoned_explorer.model.disk import disk_error, in_words
+from reasoned_explorer.model.disk import append_line, disk_error, in_words
 from reasoned_explorer.model.record import RECORD_SCHEMA, EpisodeRecord, MissionHeader, MissionSummary, StepRecord
 
 RECORD_NAME = "record.jsonl"
@@ -91,20 +91,11 @@ class RecordWriter:
                 folder.rmdir()
 
     def _line(self, kind: bytes, payload: bytes) -> None:
-        line = memoryview(b'{"' + kind + b'":' + payload + b"}\n")
-        rest = line
+        line = b'{"' + kind + b'":' + payload + b"}\n"
         try:
-            while rest:
-                rest = rest[self._file.write(rest) :]
-        except BaseException as error:
-            # Making a file shorter takes no room.
-            with suppress(OSError):
-                self._file.truncate(self._whole_bytes)
-                self._file.seek(self._whole_bytes)
-            if isinstance(error, OSError):
-                raise RecordWriteError(f"record: {in_words(self.path, error)}") from error
-            raise
-        self._whole_bytes += len(line)
+            self._whole_bytes = append_line(self._file, line, self._whole_bytes)
+        except OSError as error:
+            raise RecordWriteError(f"record: {in_words(self.path, error)}") from error
 
 
 def read_record(folder: Path | str) -> EpisodeRecord:

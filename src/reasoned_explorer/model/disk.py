@@ -5,6 +5,8 @@ input, and another place helps. Or the disk fails, because it is full, say: that
 """
 
 import errno
+from contextlib import suppress
+from io import FileIO
 from pathlib import Path
 
 from reasoned_explorer.model.errors import Fault, InputError, PartError
@@ -57,3 +59,30 @@ def disk_error(
         expected = "a folder that exists and may be written to, and a name that is not too long"
         return kind(subject, [Fault(in_words(path, error), expected, "choose another place")])
     return PartError("disk", in_words(path, error))
+
+
+def append_line(file: FileIO, line: bytes, at_bytes: int) -> int:
+    """Write a line whole at the end of an unbuffered file, or, whatever happens, not at all.
+
+    Args:
+        file: Open for writing.
+        line: With its line break.
+        at_bytes: How long the file is.
+
+    Returns:
+        How long it is then, bytes.
+
+    Raises:
+        OSError: If the disk refuses; the file is as it was.
+    """
+    rest = memoryview(line)
+    try:
+        while rest:
+            rest = rest[file.write(rest) :]
+    except BaseException:
+        # Making a file shorter takes no room.
+        with suppress(OSError):
+            file.truncate(at_bytes)
+            file.seek(at_bytes)
+        raise
+    return at_bytes + len(line)
