@@ -3,36 +3,9 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from reasoned_explorer.model.record import CallRecord
 
-@dataclass(frozen=True, slots=True)
-class CallRecord:
-    """One call.
-
-    Attributes:
-        role: ``caption``, ``visionary``, ``evaluator`` or ``checker``.
-        model: What answered.
-        key: Of the scene that it was about: (step, look, view, ...).
-        started_s: Mission time when it was asked, seconds.
-        latency_s: Seconds that it is charged.
-        tokens_in: Tokens that were sent; 0 for minds that have none.
-        tokens_out: Tokens that came back, likewise.
-        usd: US dollars, or None where the price is not known.
-        cached: Whether the answer came from a store and not from the model; its seconds are the original ones.
-        retries: How often it was asked again before it was answered or given up.
-        fault: Why there is no answer, or None.
-    """
-
-    role: str
-    model: str
-    key: tuple[int, ...]
-    started_s: float
-    latency_s: float
-    tokens_in: int = 0
-    tokens_out: int = 0
-    usd: float | None = 0.0
-    cached: bool = False
-    retries: int = 0
-    fault: str | None = None
+__all__ = ["CallRecord", "Ledger", "RoleTotals"]
 
 
 @dataclass(frozen=True, slots=True)

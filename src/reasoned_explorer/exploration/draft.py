@@ -7,7 +7,7 @@ from reasoned_explorer.exploration.graph import Choice, Frontier
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Leg, Scene, Verdict
 from reasoned_explorer.model.record import (
-    CallKept,
+    CallRecord,
     ChoiceRecord,
     FrontierRecord,
     LegRecord,
@@ -82,7 +82,7 @@ class StepDraft:
     notes: list[str] = field(default_factory=list)
     faults: int = 0
 
-    def freeze(self, *, ended_s: float, ct_s: float, tt_s: float, calls: Sequence[CallKept]) -> StepRecord:
+    def freeze(self, *, ended_s: float, ct_s: float, tt_s: float, calls: Sequence[CallRecord]) -> StepRecord:
         """Return the record of the step. Numbers are rounded to what is meaningful, so that records stay small."""
         return StepRecord(
             step=self.step,

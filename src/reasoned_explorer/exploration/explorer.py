@@ -14,7 +14,7 @@ from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose, normalise_heading_rad
 from reasoned_explorer.minds.mind import GoalChecker
 from reasoned_explorer.model import Goal, LegOutcome, PartError, Scene, Undescribed, Verdict, View
-from reasoned_explorer.model.record import CallKept, MissionEnd, StepRecord
+from reasoned_explorer.model.record import MissionEnd, StepRecord
 from reasoned_explorer.perception import Captioner
 from reasoned_explorer.planning import FrontierScore, Plan, Planner
 from reasoned_explorer.vehicles import Vehicle
@@ -137,22 +137,7 @@ class Explorer:
         self._plan_s += step.plan_s
         calls = self.parts.ledger.since(self._calls_kept)
         self._calls_kept += len(calls)
-        kept = [
-            CallKept(
-                role=call.role,
-                model=call.model,
-                key=tuple(call.key),
-                started_s=round(call.started_s, 6),
-                latency_s=round(call.latency_s, 6),
-                tokens_in=call.tokens_in,
-                tokens_out=call.tokens_out,
-                usd=call.usd,
-                cached=call.cached,
-                retries=call.retries,
-                fault=call.fault,
-            )
-            for call in calls
-        ]
+        kept = [call.rounded() for call in calls]
         record = step.freeze(ended_s=self.parts.clock.now_s(), ct_s=self._ct_s, tt_s=self._tt_s, calls=kept)
         if self.on_step is not None:
             self.on_step(record)

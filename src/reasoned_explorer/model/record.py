@@ -150,8 +150,22 @@ class LegRecord:
 
 
 @dataclass(frozen=True, slots=True)
-class CallKept:
-    """One call of a model: who, when, how long, what it cost (``usd`` is None where the price is not known)."""
+class CallRecord:
+    """One call of a model.
+
+    Attributes:
+        role: ``caption``, ``visionary``, ``evaluator`` or ``checker``.
+        model: What answered.
+        key: Of the scene that it was about: (step, look, view, ...).
+        started_s: Mission time when it was asked, seconds.
+        latency_s: Seconds that it is charged.
+        tokens_in: Tokens that were sent; 0 for minds that have none.
+        tokens_out: Tokens that came back, likewise.
+        usd: US dollars, or None where the price is not known.
+        cached: Whether the answer came from a store and not from the model; its seconds are the original ones.
+        retries: How often it was asked again before it was answered or given up.
+        fault: Why there is no answer, or None.
+    """
 
     role: str
     model: str
@@ -164,6 +178,22 @@ class CallKept:
     cached: bool = False
     retries: int = 0
     fault: str | None = None
+
+    def rounded(self) -> "CallRecord":
+        """Return it with its seconds in whole microseconds, as records keep them."""
+        return CallRecord(
+            self.role,
+            self.model,
+            self.key,
+            round(self.started_s, 6),
+            round(self.latency_s, 6),
+            self.tokens_in,
+            self.tokens_out,
+            self.usd,
+            self.cached,
+            self.retries,
+            self.fault,
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,7 +231,7 @@ class StepRecord:
     choice: ChoiceRecord | None = None
     legs: tuple[LegRecord, ...] = ()
     frontiers: tuple[FrontierRecord, ...] = ()
-    calls: tuple[CallKept, ...] = ()
+    calls: tuple[CallRecord, ...] = ()
     look_s: float = 0.0
     think_s: float = 0.0
     plan_s: float = 0.0
