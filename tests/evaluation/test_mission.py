@@ -8,12 +8,11 @@ import pytest
 from reasoned_explorer.evaluation.mission import (
     Mission,
     MissionSettings,
-    looks_of,
     run_mission,
-    track_of,
     traveller_of,
 )
 from reasoned_explorer.evaluation.record_file import read_record, record_bytes
+from reasoned_explorer.evaluation.track import looks_of, track_of
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import GoalError, RecordError, SettingsError, StartError, UnknownNameError

@@ -17,7 +17,8 @@ from reasoned_explorer.evaluation.mission_settings import CLOCKS, errors_of, wit
 from reasoned_explorer.evaluation.mission_settings import MissionSettings as MissionSettings  # noqa: PLC0414 - is had from here, too
 from reasoned_explorer.evaluation.model_desk import ModelDesk
 from reasoned_explorer.evaluation.record_file import RecordWriter
-from reasoned_explorer.evaluation.scoring import Look, MissionScore, outcome_of, score
+from reasoned_explorer.evaluation.scoring import MissionScore, outcome_of, score
+from reasoned_explorer.evaluation.track import looks_of, track_of
 from reasoned_explorer.evaluation.truth import OracleTruth
 from reasoned_explorer.exploration.explorer import Exploration, Explorer, Parts
 from reasoned_explorer.geometry import Pose
@@ -34,7 +35,6 @@ from reasoned_explorer.model import (
     RecordWriteError,
     SettingsError,
     StartError,
-    TrackPoint,
     WorldError,
 )
 from reasoned_explorer.model.checks import kind_faults, path_of
@@ -464,28 +464,6 @@ def judge_of(goal: str | GoalSpec, atlas: Atlas, vehicle: str, success_radius_m:
         success_radius_m=success_radius_m,
         camera_height_m=profile.camera_height_m,
     )
-
-
-def track_of(start: Pose, steps: list[StepRecord]) -> list[TrackPoint]:
-    """Return the true way travelled; the start is in it."""
-    track = [TrackPoint(0.0, start.x_m, start.y_m, start.z_m, start.heading_rad)]
-    for step in steps:
-        for leg in step.legs:
-            track += leg.track
-    return track
-
-
-def looks_of(steps: list[StepRecord]) -> list[Look]:
-    """Return where on `track_of` the agent looked, and in which headings; all looks of a step are from one place.
-
-    Headings are those that the vehicle believed in: within a degree or two of the true ones.
-    """
-    looks, point = [], 0
-    for step in steps:
-        if step.views:
-            looks.append(Look(point, tuple(view.heading_rad for view in step.views)))
-        point += sum(len(leg.track) for leg in step.legs)
-    return looks
 
 
 def run_mission(
