@@ -1,0 +1,1 @@
+"""What every class of things looks like: models made in code."""
