@@ -62,7 +62,7 @@ class GroundLooks(NamedTuple):
 
     Attributes:
         codes: Kinds of ground, shape (rows, columns), uint8, rows from south to north.
-        corner: West edge, south edge and edge of a cell, metres.
+        corner: West edge, south edge, edge of a cell, metres, and cells a metre, shape (4,).
         materials: Of each kind, uint8.
         colours: Of each kind, linear light, shape (kinds, 3), float32.
         averages: Mean colours in cells of 4, 8, 16 … cells, all levels one after the other, shape (n, 3), float32.
@@ -163,7 +163,8 @@ def _sky(tones: Floats, clouds: Texels, x: float, y: float, z: float) -> Rgb:
     if z > 0.01:
         side = clouds.shape[0]
         mask = side - 1
-        u, v = x / (z + 0.12) * side * 0.35, y / (z + 0.12) * side * 0.35
+        spread = 0.35 * side / (z + 0.12)
+        u, v = x * spread, y * spread
         left, top = math.floor(u), math.floor(v)
         fu, fv = u - left, v - top
         i0, i1, j0, j1 = left & mask, (left + 1) & mask, top & mask, (top + 1) & mask
@@ -207,8 +208,8 @@ def _mirrored(tones: Floats, clouds: Texels, colour: Rgb, share: float, x: float
 def _kind_at(codes: Codes, corner: Floats, x: float, y: float) -> int:
     """The kind of ground at a point: the one with most weight among the four nearest cells."""
     rows, columns = codes.shape
-    u = (x - corner[0]) / corner[2] - 0.5
-    v = (y - corner[1]) / corner[2] - 0.5
+    u = (x - corner[0]) * corner[3] - 0.5
+    v = (y - corner[1]) * corner[3] - 0.5
     if not (-0.5 <= u <= columns - 0.5 and -0.5 <= v <= rows - 0.5):
         return 0
     left, low = math.floor(u), math.floor(v)
@@ -263,7 +264,7 @@ def _ground(
     """The light from a point of the ground; (dx, dy, dz) is where the eye looks, of length 1."""
     lift = max(-dz, 1e-4)
     footprint = distance * pixel / math.sqrt(lift)
-    cells = footprint / corner[2]
+    cells = footprint * corner[3]
     kind = _kind_at(codes, corner, x, y)
     material = materials[kind]
     red, green, blue = float(colours[kind, 0]), float(colours[kind, 1]), float(colours[kind, 2])
@@ -388,7 +389,9 @@ def shade(
     ahead_x, ahead_y, ahead_z = axes[2, 0], axes[2, 1], axes[2, 2]
     owners = np.empty(4, np.int64)
     triangles = np.empty(4, np.int64)
-    scale = (curve.shape[0] - 1) / 4.0
+    scale = (curve.shape[0] - 1) / (4.0 * count)
+    per_focal = 1.0 / view.focal
+    last = curve.shape[0] - 1
     for y in range(picture.shape[0]):
         for x in range(picture.shape[1]):
             for k in range(count):
@@ -409,13 +412,14 @@ def shade(
                         middle_y += row
                         nearness += seen_nearness[row, column]
                         same += 1.0
-                across = (middle_x / same + 0.5 - view.centre_x) / view.focal
-                down = (middle_y / same + 0.5 - view.centre_y) / view.focal
+                across = (middle_x / same + 0.5 - view.centre_x) * per_focal
+                down = (middle_y / same + 0.5 - view.centre_y) * per_focal
                 dx = ahead_x + across * axes[0, 0] + down * axes[1, 0]
                 dy = ahead_y + across * axes[0, 1] + down * axes[1, 1]
                 dz = ahead_z + across * axes[0, 2] + down * axes[1, 2]
                 length = math.sqrt(dx * dx + dy * dy + dz * dz)
-                dx, dy, dz = dx / length, dy / length, dz / length
+                per_length = 1.0 / length
+                dx, dy, dz = dx * per_length, dy * per_length, dz * per_length
                 if owners[k] == SKY:
                     colour = _sky(tones, clouds, dx, dy, dz)
                 else:
@@ -438,8 +442,7 @@ def shade(
                 red += same * colour[0]
                 green += same * colour[1]
                 blue += same * colour[2]
-            last = curve.shape[0] - 1
-            picture[y, x, 0] = curve[min(last, int(scale * max(red, 0.0) / count))]
-            picture[y, x, 1] = curve[min(last, int(scale * max(green, 0.0) / count))]
-            picture[y, x, 2] = curve[min(last, int(scale * max(blue, 0.0) / count))]
+            picture[y, x, 0] = curve[min(last, int(scale * max(red, 0.0)))]
+            picture[y, x, 1] = curve[min(last, int(scale * max(green, 0.0)))]
+            picture[y, x, 2] = curve[min(last, int(scale * max(blue, 0.0)))]
     return wanted[0] == 0
