@@ -14,11 +14,11 @@ Ints = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Patch:
-    """Flat faces of three or four corners, counter-clockwise seen from outside.
+    """Flat convex faces, all with as many corners, counter-clockwise seen from outside.
 
     Attributes:
-        corners: Shape (n, 3 or 4, 3), metres.
-        uvs: Texture coordinates, metres, shape (n, 3 or 4, 2).
+        corners: Shape (n, corners, 3), metres.
+        uvs: Texture coordinates, metres, shape (n, corners, 2).
         colours: sRGB in [0, 1], shape (n, 3).
         materials: Values of `Material`, shape (n,), uint8.
         owners: Whose mesh each face belongs to, shape (n,).
@@ -125,8 +125,14 @@ def boxes(
     )
 
 
-def meshes_of(patches: Sequence[Patch], count: int) -> list[Mesh]:
-    """Return the mesh of each of ``count`` owners, its faces in the order of the patches."""
+def meshes_of(patches: Sequence[Patch], count: int, *, origins: Floats) -> list[Mesh]:
+    """Return the mesh of each of ``count`` owners, its faces in the order of the patches.
+
+    Args:
+        patches: Faces; those with more than three corners are cut into fans.
+        count: How many owners there are.
+        origins: Where each mesh has its origin, shape (count, 2), metres.
+    """
     patches = [patch for patch in patches if len(patch.corners)]
     if not patches:
         return [empty_mesh() for _ in range(count)]
@@ -135,12 +141,13 @@ def meshes_of(patches: Sequence[Patch], count: int) -> list[Mesh]:
     order = np.argsort(owners, kind="stable")
     owners, ordered = owners[order], sizes[order]
     corner = _spread((np.cumsum(sizes) - sizes)[order], ordered)
-    vertices = np.concatenate([patch.corners.reshape(-1, 3) for patch in patches]).astype(np.float32)[corner]
+    places = np.concatenate([patch.corners.reshape(-1, 3) for patch in patches])[corner]
+    places[:, :2] -= np.repeat(origins[owners], ordered, axis=0)
+    vertices = places.astype(np.float32)
     uvs = np.concatenate([patch.uvs.reshape(-1, 2) for patch in patches]).astype(np.float32)[corner]
     first = np.cumsum(ordered) - ordered
     face = np.repeat(np.arange(len(order)), ordered - 2)
-    second = np.ones(len(face), dtype=np.int64)
-    second[1:][face[1:] == face[:-1]] = 2
+    second = _spread(np.ones_like(ordered), ordered - 2)
     triangles = first[face][:, None] + np.column_stack([np.zeros_like(second), second, second + 1])
     normals = np.concatenate([_normals(patch.corners) for patch in patches])[order][face].astype(np.float32)
     colours = np.concatenate([patch.colours for patch in patches])[order][face].astype(np.float32)
@@ -179,8 +186,8 @@ def _spread(starts: Ints, sizes: Ints) -> Ints:
 
 def _normals(corners: Floats) -> Floats:
     """Return the unit normal of each face (of its diagonals, so that a needle at one corner does no harm)."""
-    if corners.shape[1] == 4:
-        normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    if corners.shape[1] > 3:
+        normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, -1] - corners[:, 1])
     else:
         normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normal, axis=1)
