@@ -8,9 +8,10 @@ import numpy as np
 from reasoned_explorer.rendering.building_styles import Family, Styles
 from reasoned_explorer.rendering.footprints import Bools, Floats, Footprints, Ints
 from reasoned_explorer.rendering.material import Material
-from reasoned_explorer.rendering.patches import Patch, boxes, lifted, plan_uvs, quads, rectangle_uvs
+from reasoned_explorer.rendering.patches import Patch, lifted, plan_uvs, quads, rectangle_uvs
 
-_PARAPET_M, _PARAPET_WIDTH_M = 0.55, 0.25
+#: How high parapets are and how thick, metres.
+PARAPET_M, _PARAPET_WIDTH_M = 0.55, 0.25
 #: How far gabled roofs reach beyond their walls, and how thick they are, metres.
 _EAVES_M, _VERGE_M, _THICK_M = 0.4, 0.25, 0.16
 #: Of a church's height, how much its nave has where it has a tower.
@@ -90,7 +91,7 @@ def _gable_spans(prints: Footprints) -> tuple[Ints, Floats]:
 def flat_roofs(prints: Footprints, styles: Styles, roofs: Roofs, *, parapets: bool) -> list[Patch]:
     """Return flat roofs, and the tops of mansards; behind their parapets or level with the top."""
     sunk = roofs.parapet & parapets
-    high = roofs.ridge_m - np.where(sunk, _PARAPET_M, 0.0)
+    high = roofs.ridge_m - np.where(sunk, PARAPET_M, 0.0)
     tiled = roofs.kinds == RoofKind.MANSARD
     inset = prints.inset(roofs.depths)
     seen = roofs.kinds[prints.triangle_owners] != RoofKind.GABLE
@@ -111,12 +112,14 @@ def _parapets(prints: Footprints, styles: Styles, roofs: Roofs) -> list[Patch]:
     edges = np.flatnonzero(roofs.parapet[prints.owners])
     owner, after = prints.owners[edges], prints.after[edges]
     inner = prints.inset(np.where(roofs.parapet, np.minimum(_PARAPET_WIDTH_M, 0.4 * prints.deepest), 0.0))
-    high, low = roofs.ridge_m[owner], roofs.ridge_m[owner] - _PARAPET_M
+    high, low = roofs.ridge_m[owner], roofs.ridge_m[owner] - PARAPET_M
     length = prints.lengths[edges]
     top = quads(
-        lifted(prints.corners[edges], high), lifted(prints.corners[after], high), lifted(inner[after], high),
+        lifted(prints.corners[edges], high),
+        lifted(prints.corners[after], high),
+        lifted(inner[after], high),
         lifted(inner[edges], high),
-    )  # fmt: skip
+    )
     back = quads(
         lifted(inner[after], low), lifted(inner[edges], low), lifted(inner[edges], high), lifted(inner[after], high)
     )
@@ -130,7 +133,7 @@ def _parapets(prints: Footprints, styles: Styles, roofs: Roofs) -> list[Patch]:
         )
         for face, tall, colours in (
             (top, _PARAPET_WIDTH_M, styles.trim_colour[owner] * 0.9),
-            (back, _PARAPET_M, styles.plain_colour[owner] * 0.9),
+            (back, PARAPET_M, styles.plain_colour[owner] * 0.9),
         )
     ]
 
@@ -142,18 +145,18 @@ def slopes(prints: Footprints, styles: Styles, roofs: Roofs) -> Patch:
     inner = prints.inset(roofs.depths)
     low, high = roofs.eaves_m[owner], roofs.ridge_m[owner]
     corners = quads(
-        lifted(prints.corners[edges], low), lifted(prints.corners[after], low), lifted(inner[after], high),
+        lifted(prints.corners[edges], low),
+        lifted(prints.corners[after], low),
+        lifted(inner[after], high),
         lifted(inner[edges], high),
-    )  # fmt: skip
+    )
     up = np.hypot(high - low, roofs.depths[owner])
     along = prints.along[edges]
     left = np.sum((inner[edges] - prints.corners[edges]) * along, axis=1)
     right = np.sum((inner[after] - prints.corners[edges]) * along, axis=1)
     uvs = rectangle_uvs(0.0, 0.0, prints.lengths[edges], up, len(edges))
     uvs[:, 2, 0], uvs[:, 3, 0] = right, left
-    return Patch.of(
-        corners, uvs, colours=styles.roof_colour[owner], materials=int(Material.ROOF_TILES), owners=owner
-    )
+    return Patch.of(corners, uvs, colours=styles.roof_colour[owner], materials=int(Material.ROOF_TILES), owners=owner)
 
 
 def gables(prints: Footprints, styles: Styles, roofs: Roofs, *, thick: bool) -> list[Patch]:
@@ -178,27 +181,38 @@ def gables(prints: Footprints, styles: Styles, roofs: Roofs, *, thick: bool) -> 
         )
         for one, other, ridge in ((points[1], points[2], ends[0]), (points[3], points[0], ends[1]))
     ]
-    for first, second, far, near in ((points[0], points[1], ends[0], ends[1]), (points[2], points[3], ends[1], ends[0])):
-        parts += _gable_slope(first, second, far, near, low, high, styles, owner, thick=thick)
+    for slope in (_Slope(points[0], points[1], ends[0], ends[1]), _Slope(points[2], points[3], ends[1], ends[0])):
+        parts += _gable_slope(slope, low, high, styles, owner, thick=thick)
     return parts
 
 
-def _gable_slope(first: Floats, second: Floats, far: Floats, near: Floats, low: Floats, high: Floats, styles: Styles,
-                 owner: Ints, *, thick: bool) -> list[Patch]:  # fmt: skip
-    """Return one side of a gabled roof: from the eaves above two corners up to the ridge between two points."""
-    along = _unit(second - first)
+@dataclass(frozen=True, slots=True, eq=False)
+class _Slope:
+    """One side of gabled roofs: the corners below its eaves, and the ends of the ridge, the one near the first last."""
+
+    first: Floats
+    second: Floats
+    far: Floats
+    near: Floats
+
+
+def _gable_slope(
+    slope: _Slope, low: Floats, high: Floats, styles: Styles, owner: Ints, *, thick: bool
+) -> list[Patch]:
+    """Return one side of gabled roofs, with their eaves and verges."""
+    along = _unit(slope.second - slope.first)
     out = np.column_stack([along[:, 1], -along[:, 0]])
-    reach = np.maximum(np.abs(np.sum((near - first) * out, axis=1)), 0.3)
-    drop = (high - low) / reach * _EAVES_M
-    eaves_z = low - drop
-    begin, end = first + _EAVES_M * out - _VERGE_M * along, second + _EAVES_M * out + _VERGE_M * along
-    ridge_begin, ridge_end = near - _VERGE_M * along, far + _VERGE_M * along
-    length, up = np.hypot(*(end - begin).T), np.hypot(reach + _EAVES_M, high - eaves_z)
+    reach = np.maximum(np.abs(np.sum((slope.near - slope.first) * out, axis=1)), 0.3)
+    eaves = low - (high - low) / reach * _EAVES_M
+    begin = slope.first + _EAVES_M * out - _VERGE_M * along
+    end = slope.second + _EAVES_M * out + _VERGE_M * along
+    ridge_begin, ridge_end = slope.near - _VERGE_M * along, slope.far + _VERGE_M * along
+    length, up = np.hypot(*(end - begin).T), np.hypot(reach + _EAVES_M, high - eaves)
 
     def sheet(lift: float) -> list[Floats]:
         return [
-            lifted(begin, eaves_z + lift),
-            lifted(end, eaves_z + lift),
+            lifted(begin, eaves + lift),
+            lifted(end, eaves + lift),
             lifted(ridge_end, high + lift),
             lifted(ridge_begin, high + lift),
         ]
@@ -210,55 +224,20 @@ def _gable_slope(first: Floats, second: Floats, far: Floats, near: Floats, low: 
     )
     if not thick:
         return [tiles]
-    edge_uvs = rectangle_uvs(0.0, 0.0, up, _THICK_M, len(owner))
     edges = [
-        Patch.of(quads(under[i], under[j], top[j], top[i]), edge_uvs, colours=styles.trim_colour[owner],
-                 materials=int(Material.WOOD), owners=owner)
+        Patch.of(
+            quads(under[i], under[j], top[j], top[i]),
+            rectangle_uvs(0.0, 0.0, up, _THICK_M, len(owner)),
+            colours=styles.trim_colour[owner],
+            materials=int(Material.WOOD),
+            owners=owner,
+        )
         for i, j in ((0, 1), (1, 2), (3, 0))
-    ]  # fmt: skip
+    ]
     soffit = Patch.of(
         quads(*under[::-1]), uvs, colours=styles.trim_colour[owner] * 0.9, materials=int(Material.PLAIN), owners=owner
     )
     return [tiles, *edges, soffit]
-
-
-def roof_things(prints: Footprints, styles: Styles, roofs: Roofs) -> list[Patch]:
-    """Return chimneys on roofs of tiles, and huts of lifts and machines on flat ones."""
-    largest = _largest_triangles(prints)
-    area = prints.triangle_areas(prints.corners)[largest]
-    middle = prints.corners[prints.triangles[largest]].mean(axis=1)
-    owner = prints.triangle_owners[largest]
-    edge = prints.triangles[largest][:, 0]
-    along = prints.along[edge]
-    draw = styles.draw(24)[owner]
-    flat = (roofs.kinds[owner] == RoofKind.FLAT) & (styles.top_m[owner] > 9.0) & (area > 25.0) & (draw < 0.75)
-    flat &= styles.family[owner] != Family.CANOPY
-    tiled = (roofs.kinds[owner] != RoofKind.FLAT) & np.isin(styles.family[owner], [Family.HOUSE, Family.FLATS])
-    tiled &= draw < 0.8
-    size = np.clip(0.28 * np.sqrt(area), 1.4, 4.5)
-    parts = [
-        boxes(
-            middle[flat], along[flat], length_m=(size * 1.4)[flat], width_m=size[flat],
-            low_m=roofs.ridge_m[owner][flat] - _PARAPET_M, high_m=roofs.ridge_m[owner][flat] + 0.6 + 1.6 * draw[flat],
-            colours=styles.plain_colour[owner][flat] * 0.92, materials=int(Material.CONCRETE), owners=owner[flat],
-        ),
-        boxes(
-            middle[tiled], along[tiled], length_m=0.9, width_m=0.55, low_m=roofs.eaves_m[owner][tiled] - 0.3,
-            high_m=roofs.ridge_m[owner][tiled] + 0.8, colours=np.array((0.62, 0.38, 0.31)),
-            materials=int(Material.BRICK), owners=owner[tiled],
-        ),
-    ]  # fmt: skip
-    return parts
-
-
-def _largest_triangles(prints: Footprints) -> Ints:
-    """Return the largest triangle of each building that has one."""
-    areas = prints.triangle_areas(prints.corners)
-    order = np.lexsort((areas, prints.triangle_owners))
-    owners = prints.triangle_owners[order]
-    last = np.append(owners[1:] != owners[:-1], True) if len(owners) else np.empty(0, np.bool_)
-    chosen: Ints = order[last]
-    return chosen
 
 
 def _unit(steps: Floats) -> Floats:

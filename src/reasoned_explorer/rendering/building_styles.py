@@ -168,8 +168,9 @@ def _picked(palette: Floats, keys: NDArray[np.uint64], purpose: int) -> Floats:
     return picked
 
 
-def _families(buildings: Sequence[Building], footprints: Footprints, keys: NDArray[np.uint64], base: Floats,
-              top: Floats) -> Ints:  # fmt: skip
+def _families(
+    buildings: Sequence[Building], footprints: Footprints, keys: NDArray[np.uint64], base: Floats, top: Floats
+) -> Ints:
     """Return the family of each building: by its kind, else by its size and a draw."""
     known = np.array([_FAMILY_OF.get(one.kind, -1) for one in buildings], dtype=np.int64)
     draw, areas, tall = mixed_draw(keys, 1), footprints.areas, top - base
@@ -195,8 +196,8 @@ def _walls(family: Ints, keys: NDArray[np.uint64], top: Floats) -> tuple[NDArray
     glass |= (family == Family.SHOP) & (draw > 0.9)
     brick_share = np.select(
         [family == Family.HOUSE, family == Family.HALL, family == Family.FLATS, family == Family.TOWER],
-        [0.38, 0.6, 0.34, 0.5],
-        0.26,
+        [0.34, 0.6, 0.24, 0.4],
+        0.18,
     )
     brick = ~glass & (draw < brick_share) & (family != Family.HUT) & (family != Family.CHURCH)
     brick |= (family == Family.CHURCH) & (draw < 0.3)
@@ -210,8 +211,9 @@ def _walls(family: Ints, keys: NDArray[np.uint64], top: Floats) -> tuple[NDArray
     return windows.astype(np.uint8), plain.astype(np.uint8)
 
 
-def _wall_colours(windows: NDArray[np.uint8], plain: NDArray[np.uint8],
-                  keys: NDArray[np.uint64]) -> tuple[Floats, Floats]:  # fmt: skip
+def _wall_colours(
+    windows: NDArray[np.uint8], plain: NDArray[np.uint8], keys: NDArray[np.uint64]
+) -> tuple[Floats, Floats]:
     """Return the colours of walls with and without windows."""
     colour = _picked(_PLASTER, keys, 4)
     for material, palette in ((Material.STONE, _STONE), (Material.CONCRETE, _CONCRETE), (Material.METAL, _METAL)):
@@ -241,8 +243,6 @@ def _pitched(family: Ints, keys: NDArray[np.uint64], top: Floats, base: Floats) 
 def _shops(family: Ints, keys: NDArray[np.uint64], tall: Floats) -> Bools:
     """Return which buildings have shop fronts along their ground floors."""
     draw = mixed_draw(keys, 8)
-    share = np.select(
-        [family == Family.SHOP, family == Family.FLATS, family == Family.OFFICE], [1.0, 0.3, 0.18], 0.0
-    )
+    share = np.select([family == Family.SHOP, family == Family.FLATS, family == Family.OFFICE], [1.0, 0.3, 0.18], 0.0)
     shops: Bools = (draw < share) & (tall > 7.0)
     return shops

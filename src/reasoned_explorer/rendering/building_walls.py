@@ -1,13 +1,13 @@
 """Walls of many buildings: storeys with whole windows, ground floors, shop fronts, undersides, cornices."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from reasoned_explorer.rendering.building_roofs import RoofKind, Roofs
 from reasoned_explorer.rendering.building_styles import Family, Styles, mixed_draw
-from reasoned_explorer.rendering.footprints import Bools, Floats, Footprints, Ints
+from reasoned_explorer.rendering.footprints import Floats, Footprints, Ints
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.patches import Patch, lifted, plan_uvs, quads, rectangle_uvs
+from reasoned_explorer.rendering.wall_spots import runs
 
 #: What the facade textures show of a bay and of a storey, metres.
 _BAY_M = 3.0
@@ -16,9 +16,18 @@ _SHOP_M = 4.0
 #: Shorter walls, and lower bands, have no windows, metres.
 _LEAST_WALL_M, _LEAST_BAND_M = 1.9, 1.9
 _SHOP_COLOURS = np.array(
-    [(0.82, 0.80, 0.76), (0.30, 0.42, 0.38), (0.62, 0.22, 0.20), (0.24, 0.32, 0.52), (0.86, 0.66, 0.30),
-     (0.34, 0.34, 0.36), (0.72, 0.72, 0.74), (0.40, 0.52, 0.30), (0.78, 0.44, 0.26)]
-)  # fmt: skip
+    [
+        (0.82, 0.80, 0.76),
+        (0.30, 0.42, 0.38),
+        (0.62, 0.22, 0.20),
+        (0.24, 0.32, 0.52),
+        (0.86, 0.66, 0.30),
+        (0.34, 0.34, 0.36),
+        (0.72, 0.72, 0.74),
+        (0.40, 0.52, 0.30),
+        (0.78, 0.44, 0.26),
+    ]
+)
 
 
 def walls(prints: Footprints, styles: Styles, roofs: Roofs, *, bands: bool) -> list[Patch]:
@@ -37,8 +46,9 @@ def walls(prints: Footprints, styles: Styles, roofs: Roofs, *, bands: bool) -> l
     return parts
 
 
-def _storeys(prints: Footprints, styles: Styles, edges: Ints, low: Floats, high: Floats, *,
-             shade: float = 1.0) -> list[Patch]:  # fmt: skip
+def _storeys(
+    prints: Footprints, styles: Styles, edges: Ints, low: Floats, high: Floats, *, shade: float = 1.0
+) -> list[Patch]:
     """Return walls between two heights, with whole bays and storeys where there is room for windows."""
     owner, length = prints.owners[edges], prints.lengths[edges]
     tall = high - low
@@ -50,35 +60,36 @@ def _storeys(prints: Footprints, styles: Styles, edges: Ints, low: Floats, high:
         (styles.family[owner] == Family.HUT) & (length < 4.0)
     )
     has_windows = (length >= np.where(glass, 0.5, _LEAST_WALL_M)) & (tall >= _LEAST_BAND_M) & ~blind
-    parity = (mixed_draw(styles.keys[owner], 11) * 2.0).astype(np.int64) + edges
+    parity = (mixed_draw(styles.keys[owner], 11) * 2.0).astype(np.int64) + prints.places[edges]
     left = _BAY_M * (parity % 2)
     floor = _BAY_M * np.round(low / 3.1)
-    windowed = _band(prints, edges, low, high, rectangle_uvs(
-        left, floor, left + _BAY_M * bays, floor + _BAY_M * storeys, len(edges)), styles.windows[owner],
-        styles.windows_colour[owner] * shade)  # fmt: skip
-    solid = _band(prints, edges, low, high, rectangle_uvs(0.0, low, length, high, len(edges)), styles.plain[owner],
-                  styles.plain_colour[owner] * shade)  # fmt: skip
+    window_uvs = rectangle_uvs(left, floor, left + _BAY_M * bays, floor + _BAY_M * storeys, len(edges))
+    plain_uvs = rectangle_uvs(0.0, low, length, high, len(edges))
+    faces = _upright(prints, edges, low, high)
+    windowed = Patch.of(
+        faces, window_uvs, colours=styles.windows_colour[owner] * shade, materials=styles.windows[owner], owners=owner
+    )
+    solid = Patch.of(
+        faces, plain_uvs, colours=styles.plain_colour[owner] * shade, materials=styles.plain[owner], owners=owner
+    )
     real = tall > 0.02
     return [windowed.where(has_windows & real), solid.where(~has_windows & real)]
 
 
-def _band(prints: Footprints, edges: Ints, low: Floats, high: Floats, uvs: Floats, materials: NDArray[np.uint8],
-          colours: Floats) -> Patch:  # fmt: skip
+def _upright(prints: Footprints, edges: Ints, low: Floats, high: Floats) -> Floats:
     begin, end = prints.corners[edges], prints.corners[prints.after[edges]]
-    corners = quads(lifted(begin, low), lifted(end, low), lifted(end, high), lifted(begin, high))
-    return Patch.of(corners, uvs, colours=colours, materials=materials, owners=prints.owners[edges])
+    return quads(lifted(begin, low), lifted(end, low), lifted(end, high), lifted(begin, high))
 
 
 def _shop_fronts(prints: Footprints, styles: Styles, edges: Ints, low: Floats, high: Floats) -> Patch:
     """Return ground floors of shop fronts side by side, each in a colour of its own."""
     fronts = np.maximum(np.round(prints.lengths[edges] / 4.6), 1.0).astype(np.int64)
-    row = np.repeat(np.arange(len(edges)), fronts)
-    place = np.arange(len(row)) - np.repeat(np.cumsum(fronts) - fronts, fronts)
+    row, place = runs(fronts)
     wall, share = edges[row], np.stack([place, place + 1.0], axis=1) / fronts[row][:, None]
     begin, along = prints.corners[wall], prints.corners[prints.after[wall]] - prints.corners[wall]
     left, right = begin + share[:, :1] * along, begin + share[:, 1:] * along
     corners = quads(lifted(left, low[row]), lifted(right, low[row]), lifted(right, high[row]), lifted(left, high[row]))
-    keys = styles.keys[prints.owners[wall]] + (wall * 64 + place).astype(np.uint64)
+    keys = styles.keys[prints.owners[wall]] + (prints.places[wall] * 64 + place).astype(np.uint64)
     colours = _SHOP_COLOURS[(mixed_draw(keys, 12) * len(_SHOP_COLOURS)).astype(np.int64)]
     return Patch.of(
         corners,
@@ -94,18 +105,24 @@ def undersides(prints: Footprints, styles: Styles) -> Patch:
     seen = styles.base_m[prints.triangle_owners] > 0.0
     triangles, owners = prints.triangles[seen][:, ::-1], prints.triangle_owners[seen]
     flat = prints.corners[triangles]
-    corners = np.concatenate([flat, np.broadcast_to(styles.base_m[owners][:, None, None], (*flat.shape[:2], 1))], axis=2)
+    corners = np.concatenate(
+        [flat, np.broadcast_to(styles.base_m[owners][:, None, None], (*flat.shape[:2], 1))], axis=2
+    )
     return Patch.of(
-        corners, plan_uvs(corners), colours=styles.plain_colour[owners] * 0.9, materials=styles.plain[owners], owners=owners
+        corners,
+        plan_uvs(corners),
+        colours=styles.plain_colour[owners] * 0.9,
+        materials=styles.plain[owners],
+        owners=owners,
     )
 
 
 def cornices(prints: Footprints, styles: Styles, roofs: Roofs) -> list[Patch]:
     """Return the cornices: a ledge around the top of the walls of buildings that are not low."""
     tall = roofs.eaves_m - styles.base_m
-    ledge = np.select(
-        [roofs.kinds == RoofKind.MANSARD, styles.windows == Material.FACADE_GLASS], [0.32, 0.0], 0.16
-    ) * (tall > 5.5)
+    ledge = np.select([roofs.kinds == RoofKind.MANSARD, styles.windows == Material.FACADE_GLASS], [0.32, 0.0], 0.16) * (
+        tall > 5.5
+    )
     ledge = ledge * prints.blunt * (roofs.kinds != RoofKind.GABLE) * (0.9 + 0.2 * styles.draw(13))
     edges = np.flatnonzero((ledge > 0.0)[prints.owners])
     owner = prints.owners[edges]
@@ -118,16 +135,12 @@ def cornices(prints: Footprints, styles: Styles, roofs: Roofs) -> list[Patch]:
     faces = [
         quads(lifted(outer[begin], low), lifted(outer[end], low), lifted(outer[end], high), lifted(outer[begin], high)),
         quads(lifted(inner[begin], low), lifted(inner[end], low), lifted(outer[end], low), lifted(outer[begin], low)),
-        quads(lifted(outer[begin], high), lifted(outer[end], high), lifted(inner[end], high), lifted(inner[begin], high)),
+        quads(
+            lifted(outer[begin], high), lifted(outer[end], high), lifted(inner[end], high), lifted(inner[begin], high)
+        ),
     ]
     uvs = rectangle_uvs(0.0, 0.0, length, 0.3, len(edges))
     return [
         Patch.of(face, uvs, colours=styles.trim_colour[owner], materials=int(Material.PLASTER), owners=owner)
         for face in faces
     ]
-
-
-def glazed(prints: Footprints, styles: Styles, chosen: Bools) -> Ints:
-    """Return the edges of outlines of the chosen buildings that are long enough for something on them."""
-    fits = chosen[prints.owners] & ~prints.in_court & (prints.lengths >= 6.0)
-    return np.flatnonzero(fits & (styles.base_m[prints.owners] < 0.5))

@@ -4,20 +4,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from reasoned_explorer.rendering.building_details import (
-    balconies,
-    church_windows,
-    doors,
-    dormers,
-    posts,
-    towers,
-)
-from reasoned_explorer.rendering.building_roofs import Roofs, flat_roofs, gables, roof_things, roofs_of, slopes
+from reasoned_explorer.rendering.building_churches import church_windows, towers
+from reasoned_explorer.rendering.building_details import balconies, dormers, posts, roof_things
+from reasoned_explorer.rendering.building_doors import doors
+from reasoned_explorer.rendering.building_roofs import Roofs, flat_roofs, gables, roofs_of, slopes
 from reasoned_explorer.rendering.building_styles import Styles, styles_of
 from reasoned_explorer.rendering.building_walls import cornices, undersides, walls
 from reasoned_explorer.rendering.footprints import Floats, Footprints
 from reasoned_explorer.rendering.mesh import Model
-from reasoned_explorer.rendering.patches import Patch, meshes_of
+from reasoned_explorer.rendering.patches import Patch, extents_of, meshes_of
 from reasoned_explorer.world.world import Building
 
 #: Where a model's origin stands, ENU metres.
@@ -64,7 +59,8 @@ def _models(buildings: Sequence[Building], places: Floats, *, seed: int) -> list
             _coarse(prints, styles, roofs),
         )
     ]
-    return [Model(tuple(meshes), meshes[0].size_m, "none") for meshes in zip(*levels, strict=True)]
+    sizes = extents_of(levels[0])
+    return [Model(meshes, size_m, "none") for meshes, size_m in zip(zip(*levels, strict=True), sizes, strict=True)]
 
 
 def _fine(buildings: Sequence[Building], prints: Footprints, styles: Styles, roofs: Roofs) -> list[Patch]:

@@ -48,8 +48,11 @@ class Footprints:
     @classmethod
     def of(cls, buildings: Sequence[Building]) -> "Footprints":
         """Tidy and triangulate the footprints of buildings."""
-        rings = [(at, ring, hole) for at, one in enumerate(buildings)
-                 for ring, hole in ((one.outer, False), *((ring, True) for ring in one.holes))]  # fmt: skip
+        rings = [
+            (at, ring, hole)
+            for at, one in enumerate(buildings)
+            for ring, hole in ((one.outer, False), *((ring, True) for ring in one.holes))
+        ]
         points = np.concatenate([np.empty((0, 2)), *(ring for _, ring, _ in rings)])
         whole = millimetres(points).astype(np.int64)
         starts = starts_of([len(ring) for _, ring, _ in rings])
@@ -115,6 +118,11 @@ class Footprints:
     def sizes(self) -> Ints:
         """How many corners each building has, courtyards included, shape (count,)."""
         return np.bincount(self.owners, minlength=self.count)
+
+    @cached_property
+    def places(self) -> Ints:
+        """The place of each corner among its own building's, shape (n,)."""
+        return np.asarray(np.arange(len(self.owners)) - (np.cumsum(self.sizes) - self.sizes)[self.owners])
 
     @cached_property
     def areas(self) -> Floats:

@@ -10,7 +10,7 @@ from reasoned_explorer.rendering.crossings import Crossings, crossings_of, is_ca
 from reasoned_explorer.rendering.kerbs import kerbs, shores
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.mesh import Model
-from reasoned_explorer.rendering.patches import Patch, boxes, lifted, meshes_of, plan_uvs, quads
+from reasoned_explorer.rendering.patches import Patch, lifted, meshes_of, plan_uvs, quads
 from reasoned_explorer.rendering.road_lines import Clearings, Lines, clearings_of
 from reasoned_explorer.world.raster import GroundRaster
 from reasoned_explorer.world.taxonomy import Ground
@@ -24,7 +24,7 @@ Place = tuple[float, float, float]
 
 #: Edge of the squares into which everything is cut, so that what is not seen is not drawn, metres.
 CHUNK_M = 32.0
-_PAINT_Z_M, _RAIL_Z_M = 0.012, 0.03
+_PAINT_Z_M, _SLEEPER_Z_M, _RAIL_Z_M = 0.012, 0.02, 0.06
 _WHITE = np.array((0.96, 0.96, 0.94))
 _STEEL, _SLEEPER = np.array((0.62, 0.60, 0.58)), np.array((0.42, 0.37, 0.33))
 _UNMARKED = frozenset({"service", "track", "living_street", "driveway", "pedestrian", "alley"})
@@ -36,9 +36,7 @@ _AISLE_M, _BACK_TO_BACK_M = 6.2, 0.3
 _GAUGE_M = 1.435
 
 
-def markings_of(
-    world: World, ground: GroundRaster, *, crossings: Crossings | None = None
-) -> list[tuple[Model, Place]]:
+def markings_of(world: World, ground: GroundRaster, *, crossings: Crossings | None = None) -> list[tuple[Model, Place]]:
     """Return everything that is painted on the ground or lies flat on it, and kerbs, in squares of `CHUNK_M`.
 
     Args:
@@ -64,8 +62,15 @@ def markings_of(
     return chunked(patches)
 
 
-def strips(begins: Floats, ends: Floats, *, width_m: Floats | float, colour: Floats = _WHITE, z_m: float = _PAINT_Z_M,
-           material: int = int(Material.CONCRETE)) -> Patch:  # fmt: skip
+def strips(
+    begins: Floats,
+    ends: Floats,
+    *,
+    width_m: Floats | float,
+    colour: Floats = _WHITE,
+    z_m: float = _PAINT_Z_M,
+    material: int = int(Material.CONCRETE),
+) -> Patch:
     """Return flat strips on the ground from points to points, each of shape (n, 2), metres."""
     step = ends - begins
     length = np.maximum(np.hypot(*step.T), 1e-9)
@@ -175,9 +180,7 @@ def _bay_lines(outer: Floats) -> tuple[Floats, Floats]:
 
 def pitches(world: World) -> Patch:
     """Return the lines of pitches."""
-    drawn = [
-        line for region in world.regions if region.ground == Ground.PITCH for line in pitch_lines(region.outer)
-    ]
+    drawn = [line for region in world.regions if region.ground == Ground.PITCH for line in pitch_lines(region.outer)]
     begins = np.concatenate([np.empty((0, 2)), *(line[:-1] for line in drawn)])
     ends = np.concatenate([np.empty((0, 2)), *(line[1:] for line in drawn)])
     return strips(begins, ends, width_m=0.12)
@@ -195,17 +198,19 @@ def rails(ways: tuple[Way, ...]) -> list[Patch]:
     unit = step / np.maximum(np.hypot(*step.T), 1e-9)[:, None]
     left = np.column_stack([-unit[:, 1], unit[:, 0]])
     parts = [
-        strips(begin + side * left, end + side * left, width_m=0.08, colour=_STEEL, z_m=0.09, material=int(Material.METAL))
+        strips(
+            begin + side * left,
+            end + side * left,
+            width_m=0.08,
+            colour=_STEEL,
+            z_m=_RAIL_Z_M,
+            material=int(Material.METAL),
+        )
         for side in (-_GAUGE_M / 2.0, _GAUGE_M / 2.0)
     ]
     trams = np.array([way.kind == "tram" for way in tracks], dtype=np.bool_)
-    _, begin, end = lines.stretches(every[~trams], every_m=1.2, long_m=0.26)
-    step = end - begin
-    unit = step / np.maximum(np.hypot(*step.T), 1e-9)[:, None]
-    parts.append(
-        boxes((begin + end) / 2.0, unit, length_m=0.26, width_m=2.5, low_m=0.0, high_m=_RAIL_Z_M + 0.03, colours=_SLEEPER,
-              materials=int(Material.CONCRETE), owners=np.zeros(len(begin), np.int64))
-    )  # fmt: skip
+    _, begin, end = lines.stretches(every[~trams], every_m=0.9, long_m=0.26)
+    parts.append(strips(begin, end, width_m=2.5, colour=_SLEEPER, z_m=_SLEEPER_Z_M, material=int(Material.CONCRETE)))
     return parts
 
 
@@ -224,6 +229,5 @@ def chunked(patches: list[Patch]) -> list[tuple[Model, Place]]:
     ]
     meshes = meshes_of(owned, len(keys), origins=places)
     return [
-        (Model((mesh,), mesh.size_m, "none"), (x, y, 0.0))
-        for mesh, (x, y) in zip(meshes, places.tolist(), strict=True)
+        (Model((mesh,), mesh.size_m, "none"), (x, y, 0.0)) for mesh, (x, y) in zip(meshes, places.tolist(), strict=True)
     ]

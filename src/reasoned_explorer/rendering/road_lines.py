@@ -30,7 +30,9 @@ class Lines:
         self.lengths: Floats = np.array([float(step.sum()) for step in steps])
         # All lines one after the other on one measuring tape, with a gap between any two.
         self._starts: Floats = np.cumsum(self.lengths + 1.0) - (self.lengths + 1.0)
-        marks = [start + np.concatenate([[0.0], np.cumsum(step)]) for start, step in zip(self._starts, steps, strict=True)]
+        marks = [
+            start + np.concatenate([[0.0], np.cumsum(step)]) for start, step in zip(self._starts, steps, strict=True)
+        ]
         self._marks: Floats = np.concatenate([np.empty(0), *marks])
         self._points: Floats = np.concatenate([np.empty((0, 2)), *lines])
 
