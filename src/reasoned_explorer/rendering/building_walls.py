@@ -61,7 +61,7 @@ def _storeys(
     )
     has_windows = (length >= np.where(glass, 0.5, _LEAST_WALL_M)) & (tall >= _LEAST_BAND_M) & ~blind
     parity = (mixed_draw(styles.keys[owner], 11) * 2.0).astype(np.int64) + prints.places[edges]
-    left = _BAY_M * (parity % 2)
+    left: Floats = _BAY_M * (parity % 2).astype(np.float64)
     floor = _BAY_M * np.round(low / 3.1)
     window_uvs = rectangle_uvs(left, floor, left + _BAY_M * bays, floor + _BAY_M * storeys, len(edges))
     plain_uvs = rectangle_uvs(0.0, low, length, high, len(edges))

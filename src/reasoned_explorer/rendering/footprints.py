@@ -107,7 +107,7 @@ class Footprints:
     def blunt(self) -> Bools:
         """Of each building, whether all its corners can be mitred, shape (count,)."""
         dot = np.sum(self.outwards[self.before] * self.outwards, axis=1)
-        return np.bincount(self.owners[1.0 + dot < _SHARPEST], minlength=self.count) == 0
+        return np.asarray(np.bincount(self.owners[1.0 + dot < _SHARPEST], minlength=self.count) == 0)
 
     @cached_property
     def triangle_owners(self) -> Ints:
@@ -127,7 +127,8 @@ class Footprints:
     @cached_property
     def areas(self) -> Floats:
         """Of each building, shape (count,), square metres."""
-        return np.bincount(self.triangle_owners, weights=self.triangle_areas(self.corners), minlength=self.count)
+        areas = self.triangle_areas(self.corners)
+        return np.asarray(np.bincount(self.triangle_owners, weights=areas, minlength=self.count), dtype=np.float64)
 
     def triangle_areas(self, corners: Floats) -> Floats:
         """Return the signed areas of the triangles with their corners moved, shape (m,)."""
@@ -172,7 +173,8 @@ class Footprints:
         shorter = np.minimum(self.lengths, self.lengths[self.after[self.after]])
         longer = np.maximum(self.lengths, self.lengths[self.after[self.after]])
         skewed = (cosine > 0.3) | (shorter < 0.72 * longer) | self.in_court
-        return (self.sizes == 4) & (np.bincount(self.owners[skewed], minlength=self.count) == 0)
+        straight = np.bincount(self.owners[skewed], minlength=self.count) == 0
+        return np.asarray((self.sizes == 4) & straight)
 
 
 def _neighbours(ring_starts: Ints) -> tuple[Ints, Ints]:

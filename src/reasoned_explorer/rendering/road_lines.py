@@ -38,6 +38,8 @@ class Lines:
 
     def at(self, which: Ints, distances: Floats) -> Floats:
         """Return points on lines, shape (n, 2); distances beyond an end give that end."""
+        if not len(which):
+            return np.empty((0, 2))
         mark = self._starts[which] + np.clip(distances, 0.0, self.lengths[which])
         return np.column_stack([np.interp(mark, self._marks, self._points[:, axis]) for axis in (0, 1)])
 

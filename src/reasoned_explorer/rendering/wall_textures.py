@@ -183,8 +183,8 @@ def facade_brick() -> Field:
     """Return red brick, already coloured, with windows under light lintels; 6 m: two bays by two storeys."""
     rng = generator_of("facade brick")
     shade, gap = _bricks(rng, 24, 76)
-    picture = mixed((0.6, 0.33, 0.25), (0.76, 0.45, 0.35), shade)
-    picture = picture * (1.0 - 0.45 * gap[..., None]) + 0.45 * gap[..., None] * np.asarray((0.8, 0.72, 0.66))
+    bricks = mixed((0.6, 0.33, 0.25), (0.76, 0.45, 0.35), shade)
+    picture: Field = bricks * (1.0 - 0.45 * gap[..., None]) + 0.45 * gap[..., None] * np.asarray((0.8, 0.72, 0.66))
     sheet = Sheet(picture, 6.0)
     for bay in (0, 1):
         for storey in (0, 1):
