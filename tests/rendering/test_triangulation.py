@@ -90,7 +90,9 @@ def test_corners_that_shape_nothing_make_no_triangles() -> None:
     _assert_covers(triangles_of(messy), shapely.Polygon(SQUARE))
 
 
-@pytest.mark.parametrize("ring", [SQUARE[:0], SQUARE[:1], SQUARE[:2], SQUARE[[0, 1, 0, 1]], SQUARE[[0, 1, 1, 0]] * 1e-5])
+@pytest.mark.parametrize(
+    "ring", [SQUARE[:0], SQUARE[:1], SQUARE[:2], SQUARE[[0, 1, 0, 1]], SQUARE[[0, 1, 1, 0]] * 1e-5]
+)
 def test_what_has_no_area_has_no_triangles(ring: Floats) -> None:
     assert triangles_of(ring).shape == (0, 3, 2)
 

@@ -19,6 +19,8 @@ _QUIET = frozenset({"service", "track", "driveway", "living_street"})
 _NARROWEST_MARKED_M = 5.0
 #: A way at a smaller angle to the road runs along it, sine.
 _LEAST_SINE = 0.45
+#: Stripes nearer to each other than this would overlap, metres.
+_APART_M = 3.6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,7 +51,9 @@ class Crossings:
         slanting = self.walks * (self.road_m / 2.0 / sine)[:, None]
         straight = across * (self.road_m / 2.0)[:, None]
         rings = [
-            np.stack([middle + side + ahead, middle - side + ahead, middle - side - ahead, middle + side - ahead], axis=1)
+            np.stack(
+                [middle + side + ahead, middle - side + ahead, middle - side - ahead, middle + side - ahead], axis=1
+            )
             for middle in (self.middles,)
             for side in (slanting, straight)
         ]
@@ -74,10 +78,25 @@ def crossings_of(world: World) -> Crossings:
     walk_m = np.array([way.width_m for _, way in walks])[pairs.walk]
     busy = np.array([way.kind not in _QUIET or way.width_m > 7.0 for _, way in roads], dtype=bool)[pairs.road]
     paved = np.array([way.ground == Ground.PAVEMENT for _, way in walks], dtype=bool)[pairs.walk]
-    marked = paved & busy & (road_m >= _NARROWEST_MARKED_M) & (sine > 0.8)
+    marked = keep & paved & busy & (road_m >= _NARROWEST_MARKED_M) & (sine > 0.8)
+    marked &= ~_beside_another(pairs.middles, marked)
     return Crossings(
         pairs.middles[keep], pairs.along[keep], pairs.walks[keep], road_m[keep], walk_m[keep], marked[keep]
     )
+
+
+def _beside_another(middles: Floats, marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return which marked crossings lie on an earlier one that stays: two ways over one crossing, say."""
+    dropped = np.zeros(len(middles), np.bool_)
+    places = np.flatnonzero(marked)
+    if len(places) < 2:
+        return dropped
+    points = shapely.points(middles[places])
+    pairs = shapely.STRtree(points).query(points, predicate="dwithin", distance=_APART_M)
+    for one, other in sorted(zip(*pairs.tolist(), strict=True)):
+        if one < other and not dropped[places[one]]:
+            dropped[places[other]] = True
+    return dropped
 
 
 def is_carriageway(way: Way) -> bool:

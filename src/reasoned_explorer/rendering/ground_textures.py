@@ -121,4 +121,5 @@ def flowers() -> Field:
     colours = np.array([(0.93, 0.2, 0.25), (0.98, 0.8, 0.2), (0.95, 0.93, 0.95), (0.78, 0.3, 0.75), (0.97, 0.5, 0.2)])
     petal = colours[np.clip(((own - 0.42) / 0.58 * len(colours)).astype(int), 0, len(colours) - 1)]
     green = mixed((0.2, 0.36, 0.12), (0.38, 0.55, 0.2), 0.6 * clouds(rng, 6, 12, 24) + 0.4 * grain(rng))
-    return green * (1.0 - head[..., None]) + petal * head[..., None]
+    picture: Field = green * (1.0 - head[..., None]) + petal * head[..., None]
+    return picture

@@ -29,10 +29,9 @@ def _same(points: Ints, a: int, b: int) -> bool:
 @njit(nogil=True, cache=True, error_model="numpy")
 def _between(points: Ints, p: int, a: int, b: int) -> bool:
     """Return whether a point that is in line with a segment lies on it, ends included."""
-    return (
-        min(points[a, 0], points[b, 0]) <= points[p, 0] <= max(points[a, 0], points[b, 0])
-        and min(points[a, 1], points[b, 1]) <= points[p, 1] <= max(points[a, 1], points[b, 1])
-    )
+    return min(points[a, 0], points[b, 0]) <= points[p, 0] <= max(points[a, 0], points[b, 0]) and min(
+        points[a, 1], points[b, 1]
+    ) <= points[p, 1] <= max(points[a, 1], points[b, 1])
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
@@ -117,15 +116,22 @@ def _is_ear(points: Ints, corner: Ints, after: Ints, before: Ints, node: int, st
             one, two, three = _turn(points, a, b, p), _turn(points, b, c, p), _turn(points, c, a, p)
             inside = one > 0 and two > 0 and three > 0
             touches = one >= 0 and two >= 0 and three >= 0
-            if inside or (touches and not strict and not _same(points, p, a) and not _same(points, p, b)
-                          and not _same(points, p, c)):  # fmt: skip
+            if inside or (
+                touches
+                and not strict
+                and not _same(points, p, a)
+                and not _same(points, p, b)
+                and not _same(points, p, c)
+            ):
                 return False
         other = after[other]
     return True
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _cut_ears(points: Ints, corner: Ints, after: Ints, before: Ints, loop: int, left: int, triangles: Ints, made: int) -> int:
+def _cut_ears(
+    points: Ints, corner: Ints, after: Ints, before: Ints, loop: int, left: int, triangles: Ints, made: int
+) -> int:
     """Cut a loop of ``left`` nodes into triangles and return how many there are now.
 
     Where no ear is found, which a proper polygon does not let happen, ever worse ones are taken: it always ends.

@@ -170,8 +170,8 @@ def facade() -> Field:
             _window(
                 sheet,
                 1.5 + 3.0 * bay,
-                0.9 + 3.0 * storey,
-                (1.2, 1.6),
+                0.8 + 3.0 * storey,
+                (1.4, 1.75),
                 frame=(0.97, 0.97, 0.96),
                 surround=(0.97, 0.97, 0.96),
                 inside=_BEHIND[bay][storey],
@@ -183,18 +183,18 @@ def facade_brick() -> Field:
     """Return red brick, already coloured, with windows under light lintels; 6 m: two bays by two storeys."""
     rng = generator_of("facade brick")
     shade, gap = _bricks(rng, 24, 76)
-    picture = mixed((0.6, 0.33, 0.25), (0.76, 0.45, 0.35), shade)
-    picture = picture * (1.0 - 0.45 * gap[..., None]) + 0.45 * gap[..., None] * np.asarray((0.8, 0.72, 0.66))
+    bricks = mixed((0.6, 0.33, 0.25), (0.76, 0.45, 0.35), shade)
+    picture: Field = bricks * (1.0 - 0.45 * gap[..., None]) + 0.45 * gap[..., None] * np.asarray((0.8, 0.72, 0.66))
     sheet = Sheet(picture, 6.0)
     for bay in (0, 1):
         for storey in (0, 1):
-            middle, low = 1.5 + 3.0 * bay, 0.85 + 3.0 * storey
-            sheet.fill(middle - 0.8, low + 1.6, middle + 0.8, low + 1.85, (0.9, 0.87, 0.8))
+            middle, low = 1.5 + 3.0 * bay, 0.75 + 3.0 * storey
+            sheet.fill(middle - 0.85, low + 1.7, middle + 0.85, low + 1.95, (0.9, 0.87, 0.8))
             _window(
                 sheet,
                 middle,
                 low,
-                (1.15, 1.6),
+                (1.3, 1.7),
                 frame=(0.95, 0.94, 0.91),
                 surround=(0.62, 0.38, 0.3),
                 inside=_BEHIND[1 - bay][storey],
@@ -224,7 +224,7 @@ def facade_glass() -> Field:
 
 
 def facade_shop() -> Field:
-    """Return a shop front between pilasters: plinth, display window, sign board; 4 m, one bay, the whole ground floor."""
+    """Return a shop front between pilasters: plinth, window, sign board; 4 m: one bay, one storey."""
     picture = grey(0.86 + 0.05 * clouds(generator_of("facade shop"), 2, 4, 8))
     sheet = Sheet(picture, 4.0)
     sheet.fill(0.0, 0.0, 4.0, 0.18, (0.5, 0.49, 0.48))
@@ -245,5 +245,3 @@ def facade_shop() -> Field:
     sheet.fill(0.0, 3.7, 4.0, 3.85, (1.0, 1.0, 1.0))
     sheet.fill(0.0, 3.62, 4.0, 3.7, (0.6, 0.6, 0.6))
     return picture
-
-
