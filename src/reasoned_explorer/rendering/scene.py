@@ -151,8 +151,8 @@ def _placed(item: WorldObject, sources: Mapping[str, ModelSource], seed: int, in
 
 def _scale(model: Model, item: WorldObject) -> tuple[float, float, float]:
     size_m = item.size_m
-    if item.object_class.kind == "vehicle":  # its length lies ahead
-        size_m = (size_m[1], size_m[0], size_m[2])
+    if item.object_class.kind == "vehicle":  # its length lies ahead, whichever way round the size was given
+        size_m = (min(size_m[:2]), max(size_m[:2]), size_m[2])
 
     def ratio(axis: int) -> float:
         natural = model.size_m[axis]

@@ -50,7 +50,7 @@ class Surfaces(NamedTuple):
     Attributes:
         faces: Of each triangle of the library: first corner, the edges from it to the second and to the third, normals
             and texture coordinates at the corners, colour in linear light, material; shape (t, 28), float32.
-        stands: Of each instance: place, sine and cosine of its heading, scale, tint; shape (n, 11), float64.
+        stands: Of each instance: place, sine and cosine of its heading, 1 / scale, tint; shape (n, 11), float64.
     """
 
     faces: NDArray[np.float32]
@@ -105,6 +105,16 @@ SUN, SUNLIGHT, SKYLIGHT, BOUNCE, ZENITH, HORIZON, GLOW, CLOUD = range(8)
 
 
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+def _halvings(size: float, most: int) -> tuple[int, float]:
+    """How often a size can be halved until it is below 2, at most ``most`` times, and what is left, at least 1."""
+    count = 0
+    while size >= 2.0 and count < most:
+        size *= 0.5
+        count += 1
+    return count, min(max(size, 1.0), 2.0)
+
+
+@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
 def _level_texel(t: Texels, starts: Ints, size: int, material: int, u: float, v: float, level: int) -> Rgb:
     """A texture's colour, bilinear in one level; u and v count repetitions."""
     side = size >> level
@@ -131,13 +141,15 @@ def _texel(
 ) -> Rgb:
     """A texture's colour at a place on a surface, blurred to the pixel's footprint there."""
     scale = per_metre[material]
-    detail = math.log2(max(footprint_m * scale * size, 1.0))
     last = starts.shape[0] - 1
-    level = min(int(detail), last)
-    red, green, blue = _level_texel(texels, starts, size, material, u_m * scale, v_m * scale, level)
-    part = detail - level
-    if part > 0.02 and level < last:
-        other = _level_texel(texels, starts, size, material, u_m * scale, v_m * scale, level + 1)
+    level, wide = _halvings(footprint_m * scale * size, last)
+    u, v = u_m * scale, v_m * scale
+    red, green, blue = _level_texel(texels, starts, size, material, u, v, level)
+    # Two levels are mixed in the middle of the way from one to the next: elsewhere one is near enough.
+    part = 2.5 * wide - 3.25
+    if part > 0.0 and level < last:
+        part = min(part, 1.0)
+        other = _level_texel(texels, starts, size, material, u, v, level + 1)
         red += part * (other[0] - red)
         green += part * (other[1] - green)
         blue += part * (other[2] - blue)
@@ -180,7 +192,9 @@ def _sky(tones: Floats, clouds: Texels, x: float, y: float, z: float) -> Rgb:
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
 def _hazed(tones: Floats, haze_m: float, colour: Rgb, distance: float, x: float, y: float, z: float) -> Rgb:
     """What is left of a colour after the air before it; the direction is of length 1."""
-    share = 1.0 - math.exp(-distance / haze_m)
+    thick = distance / haze_m
+    # The first terms of an exponential: the same to the last bit on every processor.
+    share = 1.0 - 1.0 / (1.0 + thick * (1.0 + thick * (0.5 + thick * (1.0 / 6.0 + thick * (1.0 / 24.0)))))
     near = max(0.0, x * tones[SUN, 0] + y * tones[SUN, 1] + z * tones[SUN, 2])
     glow = 0.5 * near * near * near * near
     return (
@@ -235,7 +249,7 @@ def _kind_at(codes: Codes, corner: Floats, x: float, y: float) -> int:
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
 def _average_at(corner: Floats, averages: Texels, layout: Ints, x: float, y: float, cells: float) -> Rgb:
     """The mean colour of the ground around a point, over about so many cells across."""
-    level = min(max(int(math.log2(cells) - 1.5), 0), layout.shape[0] - 1)
+    level = _halvings(cells * 0.35, layout.shape[0] - 1)[0]
     start, rows, columns = layout[level, 0], layout[level, 1], layout[level, 2]
     edge = corner[2] * (4 << level)
     u = min(max((x - corner[0]) / edge - 0.5, 0.0), columns - 1.0)
@@ -307,10 +321,10 @@ def _surface(
 ) -> Rgb:
     """The light from a point of a thing's triangle; (dx, dy, dz) is where the eye looks, of length 1."""
     sine, cosine = stands[i, 3], stands[i, 4]
-    sx, sy, sz = stands[i, 5], stands[i, 6], stands[i, 7]
+    sx, sy, sz = stands[i, 5], stands[i, 6], stands[i, 7]  # reciprocals
     ox, oy, oz = px - stands[i, 0], py - stands[i, 1], pz - stands[i, 2]
     # Where the point lies in the triangle: the weights of its corners.
-    qx, qy, qz = (ox * cosine - oy * sine) / sx - faces[t, 0], (ox * sine + oy * cosine) / sy - faces[t, 1], oz / sz
+    qx, qy, qz = (ox * cosine - oy * sine) * sx - faces[t, 0], (ox * sine + oy * cosine) * sy - faces[t, 1], oz * sz
     qz -= faces[t, 2]
     ex, ey, ez = faces[t, 3], faces[t, 4], faces[t, 5]
     fx, fy, fz = faces[t, 6], faces[t, 7], faces[t, 8]
@@ -320,9 +334,9 @@ def _surface(
     w1 = min(max((ff * qe - ef * qf) * inverse, 0.0), 1.0)
     w2 = min(max((ee * qf - ef * qe) * inverse, 0.0), 1.0)
     w0 = 1.0 - w1 - w2
-    mx = (w0 * faces[t, 9] + w1 * faces[t, 12] + w2 * faces[t, 15]) / sx
-    my = (w0 * faces[t, 10] + w1 * faces[t, 13] + w2 * faces[t, 16]) / sy
-    nz = (w0 * faces[t, 11] + w1 * faces[t, 14] + w2 * faces[t, 17]) / sz
+    mx = (w0 * faces[t, 9] + w1 * faces[t, 12] + w2 * faces[t, 15]) * sx
+    my = (w0 * faces[t, 10] + w1 * faces[t, 13] + w2 * faces[t, 16]) * sy
+    nz = (w0 * faces[t, 11] + w1 * faces[t, 14] + w2 * faces[t, 17]) * sz
     nx, ny = mx * cosine + my * sine, my * cosine - mx * sine
     length = 1.0 / math.sqrt(nx * nx + ny * ny + nz * nz + 1e-20)
     nx, ny, nz = nx * length, ny * length, nz * length
@@ -412,8 +426,9 @@ def shade(
                         middle_y += row
                         nearness += seen_nearness[row, column]
                         same += 1.0
-                across = (middle_x / same + 0.5 - view.centre_x) * per_focal
-                down = (middle_y / same + 0.5 - view.centre_y) * per_focal
+                per_same = 1.0 / same
+                across = (middle_x * per_same + 0.5 - view.centre_x) * per_focal
+                down = (middle_y * per_same + 0.5 - view.centre_y) * per_focal
                 dx = ahead_x + across * axes[0, 0] + down * axes[1, 0]
                 dy = ahead_y + across * axes[0, 1] + down * axes[1, 1]
                 dz = ahead_z + across * axes[0, 2] + down * axes[1, 2]

@@ -37,11 +37,10 @@ def _source(name: str) -> ModelSource:
     from reasoned_explorer.rendering.models import model_of, tints_of, variants_of
 
     try:
-        model_of(name)
+        variants = variants_of(name)
     except UnknownNameError:
         return _boxes(name)
-    models = [model_of(name, variant) for variant in range(variants_of(name))]
-    return ModelSource(models.__getitem__, len(models), tuple(tints_of(name)))
+    return ModelSource(lambda variant: model_of(name, variant), variants, tuple(tints_of(name)))
 
 
 def _boxes(name: str) -> ModelSource:
