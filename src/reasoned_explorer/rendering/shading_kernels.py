@@ -7,9 +7,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from reasoned_explorer.rendering.compiling import inlined, kernel
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.projection import Projection
 from reasoned_explorer.rendering.raster_kernels import GROUND, SKY, Canvas
@@ -104,7 +104,7 @@ class Light(NamedTuple):
 SUN, SUNLIGHT, SKYLIGHT, BOUNCE, ZENITH, HORIZON, GLOW, CLOUD = range(8)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _halvings(size: float, most: int) -> tuple[int, float]:
     """How often a size can be halved until it is below 2, at most ``most`` times, and what is left, at least 1."""
     count = 0
@@ -114,7 +114,7 @@ def _halvings(size: float, most: int) -> tuple[int, float]:
     return count, min(max(size, 1.0), 2.0)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _level_texel(t: Texels, starts: Ints, size: int, material: int, u: float, v: float, level: int) -> Rgb:
     """A texture's colour, bilinear in one level; u and v count repetitions."""
     side = size >> level
@@ -135,7 +135,7 @@ def _level_texel(t: Texels, starts: Ints, size: int, material: int, u: float, v:
     )
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _texel(
     texels: Texels, starts: Ints, per_metre: Floats, size: int, material: int, u_m: float, v_m: float, footprint_m: float
 ) -> Rgb:
@@ -156,7 +156,7 @@ def _texel(
     return red, green, blue
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _sky(tones: Floats, clouds: Texels, x: float, y: float, z: float) -> Rgb:
     """The sky in a direction of length 1."""
     up = max(z, 0.0)
@@ -189,7 +189,7 @@ def _sky(tones: Floats, clouds: Texels, x: float, y: float, z: float) -> Rgb:
     return red, green, blue
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _hazed(tones: Floats, haze_m: float, colour: Rgb, distance: float, x: float, y: float, z: float) -> Rgb:
     """What is left of a colour after the air before it; the direction is of length 1."""
     thick = distance / haze_m
@@ -204,7 +204,7 @@ def _hazed(tones: Floats, haze_m: float, colour: Rgb, distance: float, x: float,
     )
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _mirrored(tones: Floats, clouds: Texels, colour: Rgb, share: float, x: float, y: float, z: float) -> Rgb:
     """A colour with a share of what is seen of the surroundings in a mirrored direction."""
     seen = _sky(tones, clouds, x, y, abs(z))
@@ -218,7 +218,7 @@ def _mirrored(tones: Floats, clouds: Texels, colour: Rgb, share: float, x: float
     )
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _kind_at(codes: Codes, corner: Floats, x: float, y: float) -> int:
     """The kind of ground at a point: the one with most weight among the four nearest cells."""
     rows, columns = codes.shape
@@ -246,7 +246,7 @@ def _kind_at(codes: Codes, corner: Floats, x: float, y: float) -> int:
     return d if sum_d > most else kind
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _average_at(corner: Floats, averages: Texels, layout: Ints, x: float, y: float, cells: float) -> Rgb:
     """The mean colour of the ground around a point, over about so many cells across."""
     level = _halvings(cells * 0.35, layout.shape[0] - 1)[0]
@@ -268,7 +268,7 @@ def _average_at(corner: Floats, averages: Texels, layout: Ints, x: float, y: flo
     )
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _ground(
     codes: Codes, corner: Floats, materials: Codes, colours: Texels, averages: Texels, layout: Ints, texels: Texels,
     starts: Ints, per_metre: Floats, size: int, tones: Floats, clouds: Texels, haze_m: float, shadow: float, soft: bool,
@@ -312,7 +312,7 @@ def _ground(
     return _hazed(tones, haze_m, colour, distance, dx, dy, dz)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _surface(
     faces: Texels, stands: Floats, texels: Texels, starts: Ints, per_metre: Floats, size: int, tones: Floats,
     clouds: Texels, haze_m: float, shadow: float, soft: bool, lamps: float, frame: Floats, fine_pages: Pages,
@@ -378,33 +378,32 @@ def _surface(
     return _hazed(tones, haze_m, colour, distance, dx, dy, dz)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def shade(
     surfaces: Surfaces, looks: GroundLooks, textures: Textures, light: Light, maps: ShadowMaps, view: Projection,
-    canvas: Canvas, curve: NDArray[np.uint8], wanted: NDArray[np.uint8], picture: NDArray[np.uint8],
+    canvas: Canvas, curve: NDArray[np.uint8], wanted: NDArray[np.uint8], owners: NDArray[np.int32],
+    triangles: NDArray[np.int32], picture: NDArray[np.uint8],
 ) -> bool:
     """Set the picture, shape (height, width, 3); return whether all shadow tiles that it needs were there.
 
     The samples of a pixel that show the same triangle are shaded together, in their middle.
     """
-    # Arrays by themselves: numba counts references to what it takes out of a tuple, each time.
     faces, stands = surfaces.faces, surfaces.stands
     codes, corner, materials, colours = looks.codes, looks.corner, looks.materials, looks.colours
     averages, layout = looks.averages, looks.layout
     texels, starts, per_metre, size = textures.texels, textures.starts, textures.per_metre, textures.side
     tones, clouds = light.tones, light.clouds
+    haze_m, shadow, soft, wetness, lamps = light.haze_m, light.shadow, light.soft, light.wetness, light.lamps
     frame, fine_pages, fine = maps.frame, maps.fine_pages, maps.fine
     coarse_pages, coarse = maps.coarse_pages, maps.coarse
     seen_nearness, seen_owners, seen_triangles = canvas.nearness, canvas.owners, canvas.triangles
     eye, axes = view.eye, view.axes
-    samples = view.samples
+    samples, focal, centre_x, centre_y = view.samples, view.focal, view.centre_x, view.centre_y
     count = samples * samples
-    pixel = samples / view.focal
+    pixel = samples / focal
     ahead_x, ahead_y, ahead_z = axes[2, 0], axes[2, 1], axes[2, 2]
-    owners = np.empty(4, np.int64)
-    triangles = np.empty(4, np.int64)
     scale = (curve.shape[0] - 1) / (4.0 * count)
-    per_focal = 1.0 / view.focal
+    per_focal = 1.0 / focal
     last = curve.shape[0] - 1
     for y in range(picture.shape[0]):
         for x in range(picture.shape[1]):
@@ -427,8 +426,8 @@ def shade(
                         nearness += seen_nearness[row, column]
                         same += 1.0
                 per_same = 1.0 / same
-                across = (middle_x * per_same + 0.5 - view.centre_x) * per_focal
-                down = (middle_y * per_same + 0.5 - view.centre_y) * per_focal
+                across = (middle_x * per_same + 0.5 - centre_x) * per_focal
+                down = (middle_y * per_same + 0.5 - centre_y) * per_focal
                 dx = ahead_x + across * axes[0, 0] + down * axes[1, 0]
                 dy = ahead_y + across * axes[0, 1] + down * axes[1, 1]
                 dz = ahead_z + across * axes[0, 2] + down * axes[1, 2]
@@ -445,13 +444,13 @@ def shade(
                     if owners[k] == GROUND:
                         colour = _ground(
                             codes, corner, materials, colours, averages, layout, texels, starts, per_metre, size, tones,
-                            clouds, light.haze_m, light.shadow, light.soft, light.wetness, frame, fine_pages, fine,
+                            clouds, haze_m, shadow, soft, wetness, frame, fine_pages, fine,
                             coarse_pages, coarse, wanted, px, py, distance, dx, dy, dz, pixel,
                         )
                     else:
                         colour = _surface(
-                            faces, stands, texels, starts, per_metre, size, tones, clouds, light.haze_m, light.shadow,
-                            light.soft, light.lamps, frame, fine_pages, fine, coarse_pages, coarse, wanted, owners[k],
+                            faces, stands, texels, starts, per_metre, size, tones, clouds, haze_m, shadow,
+                            soft, lamps, frame, fine_pages, fine, coarse_pages, coarse, wanted, owners[k],
                             triangles[k], px, py, pz, distance, dx, dy, dz, pixel,
                         )
                 red += same * colour[0]
