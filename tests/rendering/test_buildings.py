@@ -1,4 +1,4 @@
-"""Buildings stand on their footprints, reach their heights, have whole windows, doors where they are entered, a roof."""
+"""Buildings stand on their footprints and reach their heights; windows are whole, doors are where one goes in."""
 
 from dataclasses import replace
 

@@ -41,9 +41,8 @@ def middles_of(patches: list[Patch]) -> Floats:
 
 
 def lanes_of(world: World) -> Floats:
-    roads = list(world.ways)
-    return middles_of(lane_lines([way for way in roads if way.ground == Ground.ROAD],
-                                 clearings_of([way for way in roads if way.ground == Ground.ROAD], crossings_of(world))))  # fmt: skip
+    roads = [way for way in world.ways if way.ground == Ground.ROAD]
+    return middles_of(lane_lines(roads, clearings_of(roads, crossings_of(world))))
 
 
 def test_dashes_run_along_the_middle_of_a_wide_road_only() -> None:
