@@ -19,7 +19,7 @@ _GRID_HEIGHT = 6.0
 _GAP = 1.7
 _STROKE = 1.05
 _SPACE = 2.2
-#: From this level of detail a word is one bar.
+#: From this level of detail a word is one bar; a single letter stays one for a level more.
 _BAR_DETAIL = 2
 
 _STROKES: dict[str, str] = {
@@ -118,7 +118,7 @@ def write(
         height_m: Of the letters.
     """
     unit = height_m / (_GRID_HEIGHT + _STROKE)
-    if builder.detail >= _BAR_DETAIL:
+    if builder.detail >= _BAR_DETAIL + (len(text) == 1):
         half_u, half_v = width_m(text, height_m) / 2.0, 0.24 * height_m
         builder.decal(surface, plane.points(rectangle(centre[0], centre[1], 2.0 * half_u, 2.0 * half_v)))
         return

@@ -66,29 +66,21 @@ def light_of(conditions: Conditions) -> Light:
     weather = _BY_NAME[conditions.weather]
     low = _lowness(conditions.sun_elevation_rad)
 
+    other = _DUSK if conditions.weather == "clear" else weather
+
     def mixed(name: str) -> NDArray[np.float64]:
         day = np.array(getattr(weather, name), np.float64)
-        if conditions.weather != "clear":
-            return day
-        return day + low * (np.array(getattr(_DUSK, name)) - day)
+        return day + low * (np.array(getattr(other, name), np.float64) - day)
 
-    other = _DUSK if conditions.weather == "clear" else weather
-    haze_m = weather.haze_m + low * (other.haze_m - weather.haze_m)
+    tones = [mixed(name) for name in ("sun", "sky", "bounce", "zenith", "horizon", "glow", "cloud")]
     return Light(
-        sun=sun_direction(conditions),
-        sun_rgb=mixed("sun"),
-        sky_rgb=mixed("sky"),
-        bounce_rgb=mixed("bounce"),
-        zenith_rgb=mixed("zenith"),
-        horizon_rgb=mixed("horizon"),
-        glow_rgb=mixed("glow"),
-        cloud_rgb=mixed("cloud"),
+        tones=np.array([sun_direction(conditions), *tones]),
         clouds=_clouds(conditions.seed, weather.cover),
-        haze_m=float(conditions.haze_m or haze_m),
+        haze_m=float(conditions.haze_m or mixed("haze_m")),
         shadow=weather.shadow,
         soft=weather.soft,
         wetness=weather.wetness,
-        lamps=float(weather.lamps + low * (other.lamps - weather.lamps)),
+        lamps=float(mixed("lamps")),
     )
 
 

@@ -1,12 +1,13 @@
-"""Textures with their mip maps, and the ground with its averages, packed for the shader."""
+"""Textures with their mip maps, the ground with its averages, and surfaces, packed for the shader."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reasoned_explorer.rendering.ground import GroundMap
-from reasoned_explorer.rendering.library import linear_from_srgb
-from reasoned_explorer.rendering.material import Material
-from reasoned_explorer.rendering.shading_kernels import GroundLooks, Textures
+from reasoned_explorer.rendering.library import Library, linear_from_srgb
+from reasoned_explorer.rendering.scene import Instances
+from reasoned_explorer.rendering.shading_kernels import GroundLooks, Surfaces, Textures
+from reasoned_explorer.rendering.textures import TEXTURE_METRES, texture_stack
 
 _FIRST_BLOCK = 4
 
@@ -35,10 +36,6 @@ def textures_of(stack: NDArray[np.float32], metres: NDArray[np.float64]) -> Text
 
 def material_textures() -> Textures:
     """Return the textures of all materials."""
-    try:
-        from reasoned_explorer.rendering.textures import TEXTURE_METRES, texture_stack
-    except ImportError:
-        return textures_of(np.ones((len(Material), 4, 4, 3), np.float32), np.ones(len(Material)))
     return textures_of(texture_stack(), TEXTURE_METRES)
 
 
@@ -59,7 +56,7 @@ def ground_looks_of(ground: GroundMap, textures: Textures) -> GroundLooks:
         level = even.reshape(rows // 2, 2, columns // 2, 2, 3).mean(axis=(1, 3), dtype=np.float32)
     averages = np.ascontiguousarray(np.concatenate(levels), np.float32)
     return GroundLooks(
-        ground.codes, ground.corner, ground.materials, ground.colours, averages, np.array(layout, np.int64)
+        ground.codes, np.append(ground.corner, 1.0 / ground.corner[2]), ground.materials, ground.colours, averages, np.array(layout, np.int64)
     )
 
 
@@ -74,3 +71,24 @@ def _block_means(codes: NDArray[np.uint8], colours: NDArray[np.float32]) -> NDAr
         for i in range(_FIRST_BLOCK):
             total += colours[padded[j::_FIRST_BLOCK, i::_FIRST_BLOCK]]
     return total / np.float32(_FIRST_BLOCK**2)
+
+
+def surfaces_of(library: Library, instances: Instances) -> Surfaces:
+    """Return triangles and instances in lines for the shader."""
+    corners = library.vertices[library.triangles]
+    count = len(corners)
+    faces = np.concatenate(
+        [
+            corners[:, 0],
+            corners[:, 1] - corners[:, 0],
+            corners[:, 2] - corners[:, 0],
+            library.normals.reshape(count, 9),
+            library.uvs.reshape(count, 6),
+            library.colours,
+            library.materials[:, None],
+        ],
+        axis=1,
+        dtype=np.float32,
+    )
+    stands = np.column_stack([instances.places, instances.turns, instances.scales, instances.tints])
+    return Surfaces(np.ascontiguousarray(faces), np.ascontiguousarray(stands, np.float64))

@@ -22,7 +22,8 @@ from reasoned_explorer.rendering.scene import Cells, Instances
 #: Owners of samples that no instance has.
 SKY, GROUND = -1, -2
 #: Edge of the blocks whose farthest sample is kept to find out what is hidden, samples.
-BLOCK = 8
+SHIFT = 3
+BLOCK = 1 << SHIFT
 #: The ground ends here, metres along the view's axis.
 GROUND_REACH_M = 10_000.0
 _BUCKETS = 512
@@ -176,8 +177,8 @@ def _refresh(canvas: Canvas, row: int, column: int) -> None:
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
 def _hidden(canvas: Canvas, rectangle: NDArray[np.int32], nearest: float) -> bool:
     """Whether all that a rectangle covers is nearer than ``nearest`` already."""
-    for row in range(rectangle[2] // BLOCK, rectangle[3] // BLOCK + 1):
-        for column in range(rectangle[0] // BLOCK, rectangle[1] // BLOCK + 1):
+    for row in range(rectangle[2] >> SHIFT, (rectangle[3] >> SHIFT) + 1):
+        for column in range(rectangle[0] >> SHIFT, (rectangle[1] >> SHIFT) + 1):
             if canvas.farthest[row, column] < nearest:
                 if not canvas.stale[row, column]:
                     return False
@@ -189,8 +190,8 @@ def _hidden(canvas: Canvas, rectangle: NDArray[np.int32], nearest: float) -> boo
 
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
 def _mark_stale(canvas: Canvas, rectangle: NDArray[np.int32]) -> None:
-    for row in range(rectangle[2] // BLOCK, rectangle[3] // BLOCK + 1):
-        for column in range(rectangle[0] // BLOCK, rectangle[1] // BLOCK + 1):
+    for row in range(rectangle[2] >> SHIFT, (rectangle[3] >> SHIFT) + 1):
+        for column in range(rectangle[0] >> SHIFT, (rectangle[1] >> SHIFT) + 1):
             canvas.stale[row, column] = 1
 
 
@@ -439,19 +440,34 @@ def read_out(
     samples = view.samples
     for y in range(depth.shape[0]):
         for x in range(depth.shape[1]):
-            best_id, best_count, best_nearness = 0, 0, np.float32(-1.0)
-            for k in range(samples * samples):
-                row, column = y * samples + k // samples, x * samples + k % samples
-                own = _id_of(canvas.owners[row, column], ids)
-                nearness, count = canvas.nearness[row, column], 0
-                for j in range(samples * samples):
-                    other_row, other_column = y * samples + j // samples, x * samples + j % samples
-                    if _id_of(canvas.owners[other_row, other_column], ids) == own:
-                        count += 1
-                if count > best_count or (count == best_count and nearness > best_nearness):
-                    best_id, best_count, best_nearness = own, count, nearness
-            found[y, x] = best_id
-            depth[y, x] = np.float32(1.0) / best_nearness if best_nearness > 0.0 else np.float32(np.inf)
+            row, column = y * samples, x * samples
+            owner, nearness = canvas.owners[row, column], canvas.nearness[row, column]
+            if samples == 2:
+                nearness = max(
+                    max(nearness, canvas.nearness[row, column + 1]),
+                    max(canvas.nearness[row + 1, column], canvas.nearness[row + 1, column + 1]),
+                )
+                others = canvas.owners[row, column + 1], canvas.owners[row + 1, column], canvas.owners[row + 1, column + 1]
+                if others[0] != owner or others[1] != owner or others[2] != owner:
+                    owner, nearness = _most_seen(canvas, ids, row, column)
+            found[y, x] = _id_of(owner, ids)
+            depth[y, x] = np.float32(1.0) / nearness if nearness > 0.0 else np.float32(np.inf)
+
+
+@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+def _most_seen(canvas: Canvas, ids: NDArray[np.int32], row: int, column: int) -> tuple[int, float]:
+    """The owner of most of a pixel's four samples, the nearest of equals, and its greatest nearness."""
+    best, most, nearest = SKY, 0, np.float32(-1.0)
+    for k in range(4):
+        owner = canvas.owners[row + (k >> 1), column + (k & 1)]
+        count, nearness = 0, np.float32(0.0)
+        for j in range(4):
+            if _id_of(canvas.owners[row + (j >> 1), column + (j & 1)], ids) == _id_of(owner, ids):
+                count += 1
+                nearness = max(nearness, canvas.nearness[row + (j >> 1), column + (j & 1)])
+        if count > most or (count == most and nearness > nearest):
+            best, most, nearest = owner, count, nearness
+    return best, nearest
 
 
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy")

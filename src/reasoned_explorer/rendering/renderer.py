@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Camera
 from reasoned_explorer.rendering.conditions import Conditions
-from reasoned_explorer.rendering.light import developing_curve, light_of
-from reasoned_explorer.rendering.mipmaps import ground_looks_of, material_textures
+from reasoned_explorer.rendering.light import developing_curve, light_of, sun_direction
+from reasoned_explorer.rendering.mipmaps import ground_looks_of, material_textures, surfaces_of
 from reasoned_explorer.rendering.projection import Projection, projection_of
 from reasoned_explorer.rendering.raster_kernels import BLOCK, Canvas, Scratch, draw, read_out
 from reasoned_explorer.rendering.scene import Scene
@@ -62,8 +62,9 @@ class Renderer:
         self.conditions = conditions or Conditions()
         self._light = light_of(self.conditions)
         self._textures = material_textures()
+        self._surfaces = surfaces_of(scene.library, scene.instances)
         self._looks = ground_looks_of(scene.ground, self._textures)
-        self._shadows = ShadowTiles(scene, self._light.sun)
+        self._shadows = ShadowTiles(scene, sun_direction(self.conditions))
         self._curve = developing_curve()
         self._rooms = threading.local()
 
@@ -111,15 +112,13 @@ class Renderer:
         return depth_m, instances
 
     def _shaded(self, view: Projection, canvas: Canvas, camera: Camera) -> NDArray[np.uint8]:
-        scene = self.scene
         colour = np.empty((camera.height_px, camera.width_px, 3), np.uint8)
         wanted = self._room().wanted
         while True:
             wanted[:] = 0
             with self._shadows.shading():
                 done = shade(
-                    scene.library,
-                    scene.instances,
+                    self._surfaces,
                     self._looks,
                     self._textures,
                     self._light,

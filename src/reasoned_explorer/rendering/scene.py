@@ -146,10 +146,14 @@ def _placed(item: WorldObject, sources: Mapping[str, ModelSource], seed: int, in
     variant = key_of(seed, "variant", item.id) % max(1, source.variants)
     model = source.model(variant)
     tint = choice(source.tints, seed, "tint", item.id) if source.tints else (1.0, 1.0, 1.0)
-    return Placed(model, instance_id, (item.x_m, item.y_m, 0.0), item.heading_rad, _scale(model, item.size_m), tint)
+    return Placed(model, instance_id, (item.x_m, item.y_m, 0.0), item.heading_rad, _scale(model, item), tint)
 
 
-def _scale(model: Model, size_m: tuple[float, float, float]) -> tuple[float, float, float]:
+def _scale(model: Model, item: WorldObject) -> tuple[float, float, float]:
+    size_m = item.size_m
+    if item.object_class.kind == "vehicle":  # its length lies ahead
+        size_m = (size_m[1], size_m[0], size_m[2])
+
     def ratio(axis: int) -> float:
         natural = model.size_m[axis]
         wanted = size_m[axis] / natural if natural > 0.0 and size_m[axis] > 0.0 else 1.0

@@ -10,15 +10,19 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from reasoned_explorer.rendering.library import Library
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.projection import Projection
 from reasoned_explorer.rendering.raster_kernels import GROUND, SKY, Canvas
-from reasoned_explorer.rendering.scene import Instances
 from reasoned_explorer.rendering.shadow_kernels import ShadowMaps, sunlight_at
 
 Rgb = tuple[float, float, float]
-_WATER, _FOLIAGE, _PAINT, _GLOW = int(Material.WATER), int(Material.FOLIAGE), int(Material.PAINT), int(Material.GLOW)
+Codes = NDArray[np.uint8]
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Texels = NDArray[np.float32]
+Pages = NDArray[np.int32]
+Tiles = NDArray[np.uint16]
+_WATER, _FOLIAGE, _PAINT, _LIT = int(Material.WATER), int(Material.FOLIAGE), int(Material.PAINT), int(Material.GLOW)
 _GLASS, _FACADE_GLASS = int(Material.GLASS), int(Material.FACADE_GLASS)
 #: Beyond this footprint of a pixel the ground is drawn from averages of its colours, in cells of the ground map.
 _FINE_CELLS, _COARSE_CELLS = 2.0, 5.0
@@ -40,12 +44,25 @@ class Textures(NamedTuple):
     per_metre: NDArray[np.float64]
 
 
+class Surfaces(NamedTuple):
+    """What the shader needs to know of triangles and of where they stand, each in one line of memory.
+
+    Attributes:
+        faces: Of each triangle of the library: first corner, the edges from it to the second and to the third, normals
+            and texture coordinates at the corners, colour in linear light, material; shape (t, 28), float32.
+        stands: Of each instance: place, sine and cosine of its heading, scale, tint; shape (n, 11), float64.
+    """
+
+    faces: NDArray[np.float32]
+    stands: NDArray[np.float64]
+
+
 class GroundLooks(NamedTuple):
     """The plane z = 0.
 
     Attributes:
         codes: Kinds of ground, shape (rows, columns), uint8, rows from south to north.
-        corner: West edge, south edge and edge of a cell, metres.
+        corner: West edge, south edge, edge of a cell, metres, and cells a metre, shape (4,).
         materials: Of each kind, uint8.
         colours: Of each kind, linear light, shape (kinds, 3), float32.
         averages: Mean colours in cells of 4, 8, 16 … cells, all levels one after the other, shape (n, 3), float32.
@@ -64,15 +81,8 @@ class Light(NamedTuple):
     """Sun, sky and air.
 
     Attributes:
-        sun: Direction to the sun, ENU, of length 1.
-        sun_rgb: What a surface that faces the sun gets of it.
-        sky_rgb: What a surface that faces up gets of the sky.
-        bounce_rgb: What a surface that faces down gets of the ground.
-        zenith_rgb: The sky above.
-        horizon_rgb: The sky at the horizon, and the colour of haze.
-        glow_rgb: Added to the sky around the sun.
-        cloud_rgb: Clouds.
-        clouds: How dense clouds are, tileable, shape (n, n), float32, in [0, 1].
+        tones: Linear-light colours and a direction, shape (8, 3), float64; the rows are this module's constants.
+        clouds: How dense clouds are, tileable, shape (n, n), n a power of two, float32, in [0, 1].
         haze_m: Distance at which haze takes the share 1 - 1/e.
         shadow: How much of the sunlight shadows take, in [0, 1].
         soft: Whether shadows are drawn from coarse tiles alone.
@@ -80,14 +90,7 @@ class Light(NamedTuple):
         lamps: How bright glowing things are.
     """
 
-    sun: NDArray[np.float64]
-    sun_rgb: NDArray[np.float64]
-    sky_rgb: NDArray[np.float64]
-    bounce_rgb: NDArray[np.float64]
-    zenith_rgb: NDArray[np.float64]
-    horizon_rgb: NDArray[np.float64]
-    glow_rgb: NDArray[np.float64]
-    cloud_rgb: NDArray[np.float64]
+    tones: NDArray[np.float64]
     clouds: NDArray[np.float32]
     haze_m: float
     shadow: float
@@ -96,20 +99,24 @@ class Light(NamedTuple):
     lamps: float
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
-def _level_texel(textures: Textures, material: int, u: float, v: float, level: int) -> Rgb:
+#: Rows of `Light.tones`: the direction to the sun (ENU, of length 1); what a surface gets of the sun that faces it, of
+#: the sky above, of the ground below; the sky above and at the horizon; what is added around the sun; clouds.
+SUN, SUNLIGHT, SKYLIGHT, BOUNCE, ZENITH, HORIZON, GLOW, CLOUD = range(8)
+
+
+@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+def _level_texel(t: Texels, starts: Ints, size: int, material: int, u: float, v: float, level: int) -> Rgb:
     """A texture's colour, bilinear in one level; u and v count repetitions."""
-    side = textures.side >> level
+    side = size >> level
     x = (u - math.floor(u)) * side - 0.5
     y = (1.0 - (v - math.floor(v))) * side - 0.5
     left, top = math.floor(x), math.floor(y)
     fx, fy = x - left, y - top
     mask = side - 1
-    start = textures.starts[level] + material * side * side
+    start = starts[level] + material * side * side
     row0, row1 = start + (top & mask) * side, start + ((top + 1) & mask) * side
     column0, column1 = left & mask, (left + 1) & mask
     w00, w01, w10, w11 = (1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy
-    t = textures.texels
     a, b, c, d = row0 + column0, row0 + column1, row1 + column0, row1 + column1
     return (
         w00 * t[a, 0] + w01 * t[b, 0] + w10 * t[c, 0] + w11 * t[d, 0],
@@ -118,71 +125,75 @@ def _level_texel(textures: Textures, material: int, u: float, v: float, level: i
     )
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
-def _texel(textures: Textures, material: int, u_m: float, v_m: float, footprint_m: float) -> Rgb:
+@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+def _texel(
+    texels: Texels, starts: Ints, per_metre: Floats, size: int, material: int, u_m: float, v_m: float, footprint_m: float
+) -> Rgb:
     """A texture's colour at a place on a surface, blurred to the pixel's footprint there."""
-    scale = textures.per_metre[material]
-    detail = math.log2(max(footprint_m * scale * textures.side, 1.0))
-    last = textures.starts.shape[0] - 1
+    scale = per_metre[material]
+    detail = math.log2(max(footprint_m * scale * size, 1.0))
+    last = starts.shape[0] - 1
     level = min(int(detail), last)
-    red, green, blue = _level_texel(textures, material, u_m * scale, v_m * scale, level)
+    red, green, blue = _level_texel(texels, starts, size, material, u_m * scale, v_m * scale, level)
     part = detail - level
     if part > 0.02 and level < last:
-        other = _level_texel(textures, material, u_m * scale, v_m * scale, level + 1)
+        other = _level_texel(texels, starts, size, material, u_m * scale, v_m * scale, level + 1)
         red += part * (other[0] - red)
         green += part * (other[1] - green)
         blue += part * (other[2] - blue)
     return red, green, blue
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
-def _sky(light: Light, x: float, y: float, z: float) -> Rgb:
+@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+def _sky(tones: Floats, clouds: Texels, x: float, y: float, z: float) -> Rgb:
     """The sky in a direction of length 1."""
     up = max(z, 0.0)
     low = (1.0 - up) * (1.0 - up)
     low *= low
-    red = light.zenith_rgb[0] + low * (light.horizon_rgb[0] - light.zenith_rgb[0])
-    green = light.zenith_rgb[1] + low * (light.horizon_rgb[1] - light.zenith_rgb[1])
-    blue = light.zenith_rgb[2] + low * (light.horizon_rgb[2] - light.zenith_rgb[2])
-    near = max(0.0, x * light.sun[0] + y * light.sun[1] + z * light.sun[2])
+    red = tones[ZENITH, 0] + low * (tones[HORIZON, 0] - tones[ZENITH, 0])
+    green = tones[ZENITH, 1] + low * (tones[HORIZON, 1] - tones[ZENITH, 1])
+    blue = tones[ZENITH, 2] + low * (tones[HORIZON, 2] - tones[ZENITH, 2])
+    near = max(0.0, x * tones[SUN, 0] + y * tones[SUN, 1] + z * tones[SUN, 2])
     glow = near * near
     glow *= glow
     glow = 0.35 * glow + 0.65 * glow * glow * glow * glow
-    red += glow * light.glow_rgb[0]
-    green += glow * light.glow_rgb[1]
-    blue += glow * light.glow_rgb[2]
+    red += glow * tones[GLOW, 0]
+    green += glow * tones[GLOW, 1]
+    blue += glow * tones[GLOW, 2]
     if z > 0.01:
-        side = light.clouds.shape[0]
-        u, v = x / (z + 0.12) * side * 0.35, y / (z + 0.12) * side * 0.35
+        side = clouds.shape[0]
+        mask = side - 1
+        spread = 0.35 * side / (z + 0.12)
+        u, v = x * spread, y * spread
         left, top = math.floor(u), math.floor(v)
         fu, fv = u - left, v - top
-        i0, i1, j0, j1 = left % side, (left + 1) % side, top % side, (top + 1) % side
-        c = light.clouds
+        i0, i1, j0, j1 = left & mask, (left + 1) & mask, top & mask, (top + 1) & mask
+        c = clouds
         cover = (1.0 - fv) * ((1.0 - fu) * c[j0, i0] + fu * c[j0, i1]) + fv * ((1.0 - fu) * c[j1, i0] + fu * c[j1, i1])
         cover *= min(1.0, (z - 0.01) * 6.0)
-        red += cover * (light.cloud_rgb[0] - red)
-        green += cover * (light.cloud_rgb[1] - green)
-        blue += cover * (light.cloud_rgb[2] - blue)
+        red += cover * (tones[CLOUD, 0] - red)
+        green += cover * (tones[CLOUD, 1] - green)
+        blue += cover * (tones[CLOUD, 2] - blue)
     return red, green, blue
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
-def _hazed(light: Light, colour: Rgb, distance: float, x: float, y: float, z: float) -> Rgb:
+@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+def _hazed(tones: Floats, haze_m: float, colour: Rgb, distance: float, x: float, y: float, z: float) -> Rgb:
     """What is left of a colour after the air before it; the direction is of length 1."""
-    share = 1.0 - math.exp(-distance / light.haze_m)
-    near = max(0.0, x * light.sun[0] + y * light.sun[1] + z * light.sun[2])
+    share = 1.0 - math.exp(-distance / haze_m)
+    near = max(0.0, x * tones[SUN, 0] + y * tones[SUN, 1] + z * tones[SUN, 2])
     glow = 0.5 * near * near * near * near
     return (
-        colour[0] + share * (light.horizon_rgb[0] + glow * light.glow_rgb[0] - colour[0]),
-        colour[1] + share * (light.horizon_rgb[1] + glow * light.glow_rgb[1] - colour[1]),
-        colour[2] + share * (light.horizon_rgb[2] + glow * light.glow_rgb[2] - colour[2]),
+        colour[0] + share * (tones[HORIZON, 0] + glow * tones[GLOW, 0] - colour[0]),
+        colour[1] + share * (tones[HORIZON, 1] + glow * tones[GLOW, 1] - colour[1]),
+        colour[2] + share * (tones[HORIZON, 2] + glow * tones[GLOW, 2] - colour[2]),
     )
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
-def _mirrored(light: Light, colour: Rgb, share: float, x: float, y: float, z: float) -> Rgb:
+@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+def _mirrored(tones: Floats, clouds: Texels, colour: Rgb, share: float, x: float, y: float, z: float) -> Rgb:
     """A colour with a share of what is seen of the surroundings in a mirrored direction."""
-    seen = _sky(light, x, y, abs(z))
+    seen = _sky(tones, clouds, x, y, abs(z))
     if z < 0.0:
         dim = 0.35
         seen = (seen[0] * dim, seen[1] * dim, seen[2] * dim)
@@ -193,18 +204,18 @@ def _mirrored(light: Light, colour: Rgb, share: float, x: float, y: float, z: fl
     )
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
-def _kind_at(looks: GroundLooks, x: float, y: float) -> int:
+@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+def _kind_at(codes: Codes, corner: Floats, x: float, y: float) -> int:
     """The kind of ground at a point: the one with most weight among the four nearest cells."""
-    rows, columns = looks.codes.shape
-    u = (x - looks.corner[0]) / looks.corner[2] - 0.5
-    v = (y - looks.corner[1]) / looks.corner[2] - 0.5
+    rows, columns = codes.shape
+    u = (x - corner[0]) * corner[3] - 0.5
+    v = (y - corner[1]) * corner[3] - 0.5
     if not (-0.5 <= u <= columns - 0.5 and -0.5 <= v <= rows - 0.5):
         return 0
     left, low = math.floor(u), math.floor(v)
     i0, i1 = max(left, 0), min(left + 1, columns - 1)
     j0, j1 = max(low, 0), min(low + 1, rows - 1)
-    a, b, c, d = looks.codes[j0, i0], looks.codes[j0, i1], looks.codes[j1, i0], looks.codes[j1, i1]
+    a, b, c, d = codes[j0, i0], codes[j0, i1], codes[j1, i0], codes[j1, i1]
     if a == b and a == c and a == d:
         return a
     fu, fv = u - left, v - low
@@ -221,21 +232,21 @@ def _kind_at(looks: GroundLooks, x: float, y: float) -> int:
     return d if sum_d > most else kind
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
-def _average_at(looks: GroundLooks, x: float, y: float, cells: float) -> Rgb:
+@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+def _average_at(corner: Floats, averages: Texels, layout: Ints, x: float, y: float, cells: float) -> Rgb:
     """The mean colour of the ground around a point, over about so many cells across."""
-    level = min(max(int(math.log2(cells) - 1.5), 0), looks.layout.shape[0] - 1)
-    start, rows, columns = looks.layout[level, 0], looks.layout[level, 1], looks.layout[level, 2]
-    edge = looks.corner[2] * (4 << level)
-    u = min(max((x - looks.corner[0]) / edge - 0.5, 0.0), columns - 1.0)
-    v = min(max((y - looks.corner[1]) / edge - 0.5, 0.0), rows - 1.0)
+    level = min(max(int(math.log2(cells) - 1.5), 0), layout.shape[0] - 1)
+    start, rows, columns = layout[level, 0], layout[level, 1], layout[level, 2]
+    edge = corner[2] * (4 << level)
+    u = min(max((x - corner[0]) / edge - 0.5, 0.0), columns - 1.0)
+    v = min(max((y - corner[1]) / edge - 0.5, 0.0), rows - 1.0)
     left, low = int(u), int(v)
     i1, j1 = min(left + 1, columns - 1), min(low + 1, rows - 1)
     fu, fv = u - left, v - low
     a, b = start + low * columns + left, start + low * columns + i1
     c, d = start + j1 * columns + left, start + j1 * columns + i1
     wa, wb, wc, wd = (1.0 - fu) * (1.0 - fv), fu * (1.0 - fv), (1.0 - fu) * fv, fu * fv
-    t = looks.averages
+    t = averages
     return (
         wa * t[a, 0] + wb * t[b, 0] + wc * t[c, 0] + wd * t[d, 0],
         wa * t[a, 1] + wb * t[b, 1] + wc * t[c, 1] + wd * t[d, 1],
@@ -243,138 +254,149 @@ def _average_at(looks: GroundLooks, x: float, y: float, cells: float) -> Rgb:
     )
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
 def _ground(
-    looks: GroundLooks, textures: Textures, light: Light, maps: ShadowMaps, view: Projection, wanted: NDArray[np.uint8],
+    codes: Codes, corner: Floats, materials: Codes, colours: Texels, averages: Texels, layout: Ints, texels: Texels,
+    starts: Ints, per_metre: Floats, size: int, tones: Floats, clouds: Texels, haze_m: float, shadow: float, soft: bool,
+    wetness: float, frame: Floats, fine_pages: Pages, fine: Tiles, coarse_pages: Pages, coarse: Tiles, wanted: Codes,
     x: float, y: float, distance: float, dx: float, dy: float, dz: float, pixel: float,
 ) -> Rgb:
     """The light from a point of the ground; (dx, dy, dz) is where the eye looks, of length 1."""
     lift = max(-dz, 1e-4)
     footprint = distance * pixel / math.sqrt(lift)
-    cells = footprint / looks.corner[2]
-    kind = _kind_at(looks, x, y)
-    material = looks.materials[kind]
-    red, green, blue = float(looks.colours[kind, 0]), float(looks.colours[kind, 1]), float(looks.colours[kind, 2])
+    cells = footprint * corner[3]
+    kind = _kind_at(codes, corner, x, y)
+    material = materials[kind]
+    red, green, blue = float(colours[kind, 0]), float(colours[kind, 1]), float(colours[kind, 2])
     if cells < _COARSE_CELLS:
-        texel = _texel(textures, material, x, y, footprint)
+        texel = _texel(texels, starts, per_metre, size, material, x, y, footprint)
         red, green, blue = red * texel[0], green * texel[1], blue * texel[2]
     inside = kind != 0
     if cells > _FINE_CELLS and inside:
         share = min(1.0, (cells - _FINE_CELLS) / (_COARSE_CELLS - _FINE_CELLS))
-        mean = _average_at(looks, x, y, cells)
+        mean = _average_at(corner, averages, layout, x, y, cells)
         red += share * (mean[0] - red)
         green += share * (mean[1] - green)
         blue += share * (mean[2] - blue)
-    lit = sunlight_at(maps, light.soft, view, wanted, x, y, 0.0, 0.0, 0.0, 1.0, distance, pixel)
-    lit = light.sun[2] * (1.0 - light.shadow * (1.0 - lit))
+    lit = sunlight_at(frame, fine_pages, fine, coarse_pages, coarse, soft, wanted, x, y, 0.0, 0.0, 0.0, 1.0, distance, pixel)
+    lit = tones[SUN, 2] * (1.0 - shadow * (1.0 - lit))
     wet = 0.0
-    if light.wetness > 0.0 and material != _WATER:
-        wet = light.wetness
+    if wetness > 0.0 and material != _WATER:
+        wet = wetness
         dark = 1.0 - 0.4 * wet
         red, green, blue = red * dark, green * dark, blue * dark
     colour = (
-        red * (light.sky_rgb[0] + lit * light.sun_rgb[0]),
-        green * (light.sky_rgb[1] + lit * light.sun_rgb[1]),
-        blue * (light.sky_rgb[2] + lit * light.sun_rgb[2]),
+        red * (tones[SKYLIGHT, 0] + lit * tones[SUNLIGHT, 0]),
+        green * (tones[SKYLIGHT, 1] + lit * tones[SUNLIGHT, 1]),
+        blue * (tones[SKYLIGHT, 2] + lit * tones[SUNLIGHT, 2]),
     )
     if material == _WATER or wet > 0.0:
         graze = 1.0 - lift
         graze *= graze
         share = 0.06 + 0.75 * graze * graze if material == _WATER else wet * (0.03 + 0.55 * graze * graze)
-        colour = _mirrored(light, colour, share, dx, dy, -dz)
-    return _hazed(light, colour, distance, dx, dy, dz)
+        colour = _mirrored(tones, clouds, colour, share, dx, dy, -dz)
+    return _hazed(tones, haze_m, colour, distance, dx, dy, dz)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
 def _surface(
-    library: Library, instances: Instances, textures: Textures, light: Light, maps: ShadowMaps, view: Projection,
-    wanted: NDArray[np.uint8], i: int, t: int, px: float, py: float, pz: float, distance: float, dx: float, dy: float,
+    faces: Texels, stands: Floats, texels: Texels, starts: Ints, per_metre: Floats, size: int, tones: Floats,
+    clouds: Texels, haze_m: float, shadow: float, soft: bool, lamps: float, frame: Floats, fine_pages: Pages,
+    fine: Tiles, coarse_pages: Pages, coarse: Tiles, wanted: Codes, i: int, t: int, px: float, py: float, pz: float, distance: float, dx: float, dy: float,
     dz: float, pixel: float,
 ) -> Rgb:
     """The light from a point of a thing's triangle; (dx, dy, dz) is where the eye looks, of length 1."""
-    sine, cosine = instances.turns[i, 0], instances.turns[i, 1]
-    sx, sy, sz = instances.scales[i, 0], instances.scales[i, 1], instances.scales[i, 2]
-    ox, oy, oz = px - instances.places[i, 0], py - instances.places[i, 1], pz - instances.places[i, 2]
-    lx, ly, lz = (ox * cosine - oy * sine) / sx, (ox * sine + oy * cosine) / sy, oz / sz
-    a, b, c = library.triangles[t, 0], library.triangles[t, 1], library.triangles[t, 2]
-    v = library.vertices
-    x0, y0, z0 = float(v[a, 0]), float(v[a, 1]), float(v[a, 2])
-    ex, ey, ez = v[b, 0] - x0, v[b, 1] - y0, v[b, 2] - z0
-    fx, fy, fz = v[c, 0] - x0, v[c, 1] - y0, v[c, 2] - z0
-    qx, qy, qz = lx - x0, ly - y0, lz - z0
+    sine, cosine = stands[i, 3], stands[i, 4]
+    sx, sy, sz = stands[i, 5], stands[i, 6], stands[i, 7]
+    ox, oy, oz = px - stands[i, 0], py - stands[i, 1], pz - stands[i, 2]
+    # Where the point lies in the triangle: the weights of its corners.
+    qx, qy, qz = (ox * cosine - oy * sine) / sx - faces[t, 0], (ox * sine + oy * cosine) / sy - faces[t, 1], oz / sz
+    qz -= faces[t, 2]
+    ex, ey, ez = faces[t, 3], faces[t, 4], faces[t, 5]
+    fx, fy, fz = faces[t, 6], faces[t, 7], faces[t, 8]
     ee, ff, ef = ex * ex + ey * ey + ez * ez, fx * fx + fy * fy + fz * fz, ex * fx + ey * fy + ez * fz
     qe, qf = qx * ex + qy * ey + qz * ez, qx * fx + qy * fy + qz * fz
     inverse = 1.0 / max(ee * ff - ef * ef, 1e-18)
     w1 = min(max((ff * qe - ef * qf) * inverse, 0.0), 1.0)
     w2 = min(max((ee * qf - ef * qe) * inverse, 0.0), 1.0)
     w0 = 1.0 - w1 - w2
-    n = library.normals
-    mx = (w0 * n[t, 0, 0] + w1 * n[t, 1, 0] + w2 * n[t, 2, 0]) / sx
-    my = (w0 * n[t, 0, 1] + w1 * n[t, 1, 1] + w2 * n[t, 2, 1]) / sy
-    nz = (w0 * n[t, 0, 2] + w1 * n[t, 1, 2] + w2 * n[t, 2, 2]) / sz
+    mx = (w0 * faces[t, 9] + w1 * faces[t, 12] + w2 * faces[t, 15]) / sx
+    my = (w0 * faces[t, 10] + w1 * faces[t, 13] + w2 * faces[t, 16]) / sy
+    nz = (w0 * faces[t, 11] + w1 * faces[t, 14] + w2 * faces[t, 17]) / sz
     nx, ny = mx * cosine + my * sine, my * cosine - mx * sine
     length = 1.0 / math.sqrt(nx * nx + ny * ny + nz * nz + 1e-20)
     nx, ny, nz = nx * length, ny * length, nz * length
     facing = -(nx * dx + ny * dy + nz * dz)
-    uvs = library.uvs
-    u = w0 * uvs[t, 0, 0] + w1 * uvs[t, 1, 0] + w2 * uvs[t, 2, 0]
-    w = w0 * uvs[t, 0, 1] + w1 * uvs[t, 1, 1] + w2 * uvs[t, 2, 1]
-    material = library.materials[t]
+    u = w0 * faces[t, 18] + w1 * faces[t, 20] + w2 * faces[t, 22]
+    w = w0 * faces[t, 19] + w1 * faces[t, 21] + w2 * faces[t, 23]
+    material = int(faces[t, 27])
     footprint = distance * pixel / math.sqrt(max(facing, 0.05))
-    red, green, blue = _texel(textures, material, u, w, footprint)
-    red *= library.colours[t, 0]
-    green *= library.colours[t, 1]
-    blue *= library.colours[t, 2]
+    red, green, blue = _texel(texels, starts, per_metre, size, material, u, w, footprint)
+    red *= faces[t, 24]
+    green *= faces[t, 25]
+    blue *= faces[t, 26]
     if material == _PAINT or material == _FOLIAGE:
-        red *= instances.tints[i, 0]
-        green *= instances.tints[i, 1]
-        blue *= instances.tints[i, 2]
-    if material == _GLOW:
-        return _hazed(light, (red * light.lamps, green * light.lamps, blue * light.lamps), distance, dx, dy, dz)
-    slant = nx * light.sun[0] + ny * light.sun[1] + nz * light.sun[2]
+        red *= stands[i, 8]
+        green *= stands[i, 9]
+        blue *= stands[i, 10]
+    if material == _LIT:
+        return _hazed(tones, haze_m, (red * lamps, green * lamps, blue * lamps), distance, dx, dy, dz)
+    slant = nx * tones[SUN, 0] + ny * tones[SUN, 1] + nz * tones[SUN, 2]
     if material == _FOLIAGE:  # leaves let some light through
         slant = 0.3 + 0.7 * slant
     lit = 0.0
     if slant > 0.0:
-        lit = sunlight_at(maps, light.soft, view, wanted, px, py, pz, nx, ny, nz, distance, pixel)
-        lit = slant * (1.0 - light.shadow * (1.0 - lit))
+        lit = sunlight_at(frame, fine_pages, fine, coarse_pages, coarse, soft, wanted, px, py, pz, nx, ny, nz, distance, pixel)
+        lit = slant * (1.0 - shadow * (1.0 - lit))
     up = 0.5 + 0.5 * nz
     near_ground = 0.72 + 0.28 * min(1.0, pz / 1.2)  # less of the sky is seen close to the ground
     colour = (
-        red * (near_ground * (light.bounce_rgb[0] + up * (light.sky_rgb[0] - light.bounce_rgb[0])) + lit * light.sun_rgb[0]),
-        green * (near_ground * (light.bounce_rgb[1] + up * (light.sky_rgb[1] - light.bounce_rgb[1])) + lit * light.sun_rgb[1]),
-        blue * (near_ground * (light.bounce_rgb[2] + up * (light.sky_rgb[2] - light.bounce_rgb[2])) + lit * light.sun_rgb[2]),
+        red * (near_ground * (tones[BOUNCE, 0] + up * (tones[SKYLIGHT, 0] - tones[BOUNCE, 0])) + lit * tones[SUNLIGHT, 0]),
+        green * (near_ground * (tones[BOUNCE, 1] + up * (tones[SKYLIGHT, 1] - tones[BOUNCE, 1])) + lit * tones[SUNLIGHT, 1]),
+        blue * (near_ground * (tones[BOUNCE, 2] + up * (tones[SKYLIGHT, 2] - tones[BOUNCE, 2])) + lit * tones[SUNLIGHT, 2]),
     )
     if material == _GLASS or material == _FACADE_GLASS or material == _WATER or material == _PAINT:
         graze = 1.0 - max(facing, 0.0)
         graze *= graze
         graze *= graze
         share = 0.03 + 0.4 * graze if material == _PAINT else 0.15 + 0.65 * graze
-        colour = _mirrored(light, colour, share, dx + 2.0 * facing * nx, dy + 2.0 * facing * ny, dz + 2.0 * facing * nz)
-    return _hazed(light, colour, distance, dx, dy, dz)
+        colour = _mirrored(tones, clouds, colour, share, dx + 2.0 * facing * nx, dy + 2.0 * facing * ny, dz + 2.0 * facing * nz)
+    return _hazed(tones, haze_m, colour, distance, dx, dy, dz)
 
 
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
 def shade(
-    library: Library, instances: Instances, looks: GroundLooks, textures: Textures, light: Light, maps: ShadowMaps,
-    view: Projection, canvas: Canvas, curve: NDArray[np.uint8], wanted: NDArray[np.uint8], picture: NDArray[np.uint8],
+    surfaces: Surfaces, looks: GroundLooks, textures: Textures, light: Light, maps: ShadowMaps, view: Projection,
+    canvas: Canvas, curve: NDArray[np.uint8], wanted: NDArray[np.uint8], picture: NDArray[np.uint8],
 ) -> bool:
     """Set the picture, shape (height, width, 3); return whether all shadow tiles that it needs were there.
 
     The samples of a pixel that show the same triangle are shaded together, in their middle.
     """
+    # Arrays by themselves: numba counts references to what it takes out of a tuple, each time.
+    faces, stands = surfaces.faces, surfaces.stands
+    codes, corner, materials, colours = looks.codes, looks.corner, looks.materials, looks.colours
+    averages, layout = looks.averages, looks.layout
+    texels, starts, per_metre, size = textures.texels, textures.starts, textures.per_metre, textures.side
+    tones, clouds = light.tones, light.clouds
+    frame, fine_pages, fine = maps.frame, maps.fine_pages, maps.fine
+    coarse_pages, coarse = maps.coarse_pages, maps.coarse
+    seen_nearness, seen_owners, seen_triangles = canvas.nearness, canvas.owners, canvas.triangles
+    eye, axes = view.eye, view.axes
     samples = view.samples
     count = samples * samples
     pixel = samples / view.focal
-    ahead_x, ahead_y, ahead_z = view.axes[2, 0], view.axes[2, 1], view.axes[2, 2]
+    ahead_x, ahead_y, ahead_z = axes[2, 0], axes[2, 1], axes[2, 2]
     owners = np.empty(4, np.int64)
     triangles = np.empty(4, np.int64)
-    scale = (curve.shape[0] - 1) / 4.0
+    scale = (curve.shape[0] - 1) / (4.0 * count)
+    per_focal = 1.0 / view.focal
+    last = curve.shape[0] - 1
     for y in range(picture.shape[0]):
         for x in range(picture.shape[1]):
             for k in range(count):
-                row, column = y * samples + k // samples, x * samples + k % samples
-                owners[k], triangles[k] = canvas.owners[row, column], canvas.triangles[row, column]
+                row, column = y * samples + (k >> 1), x * samples + (k & 1)
+                owners[k], triangles[k] = seen_owners[row, column], seen_triangles[row, column]
             red, green, blue = 0.0, 0.0, 0.0
             done = 0
             for k in range(count):
@@ -384,40 +406,43 @@ def shade(
                 middle_x, middle_y, nearness, same = 0.0, 0.0, 0.0, 0.0
                 for j in range(k, count):
                     if owners[j] == owners[k] and triangles[j] == triangles[k]:
-                        row, column = y * samples + j // samples, x * samples + j % samples
+                        row, column = y * samples + (j >> 1), x * samples + (j & 1)
                         done |= 1 << j
                         middle_x += column
                         middle_y += row
-                        nearness += canvas.nearness[row, column]
+                        nearness += seen_nearness[row, column]
                         same += 1.0
-                across = (middle_x / same + 0.5 - view.centre_x) / view.focal
-                down = (middle_y / same + 0.5 - view.centre_y) / view.focal
-                dx = ahead_x + across * view.axes[0, 0] + down * view.axes[1, 0]
-                dy = ahead_y + across * view.axes[0, 1] + down * view.axes[1, 1]
-                dz = ahead_z + across * view.axes[0, 2] + down * view.axes[1, 2]
+                across = (middle_x / same + 0.5 - view.centre_x) * per_focal
+                down = (middle_y / same + 0.5 - view.centre_y) * per_focal
+                dx = ahead_x + across * axes[0, 0] + down * axes[1, 0]
+                dy = ahead_y + across * axes[0, 1] + down * axes[1, 1]
+                dz = ahead_z + across * axes[0, 2] + down * axes[1, 2]
                 length = math.sqrt(dx * dx + dy * dy + dz * dz)
-                dx, dy, dz = dx / length, dy / length, dz / length
+                per_length = 1.0 / length
+                dx, dy, dz = dx * per_length, dy * per_length, dz * per_length
                 if owners[k] == SKY:
-                    colour = _sky(light, dx, dy, dz)
+                    colour = _sky(tones, clouds, dx, dy, dz)
                 else:
                     distance = length * same / nearness
-                    px = view.eye[0] + dx * distance
-                    py = view.eye[1] + dy * distance
-                    pz = view.eye[2] + dz * distance
+                    px = eye[0] + dx * distance
+                    py = eye[1] + dy * distance
+                    pz = eye[2] + dz * distance
                     if owners[k] == GROUND:
                         colour = _ground(
-                            looks, textures, light, maps, view, wanted, px, py, distance, dx, dy, dz, pixel
+                            codes, corner, materials, colours, averages, layout, texels, starts, per_metre, size, tones,
+                            clouds, light.haze_m, light.shadow, light.soft, light.wetness, frame, fine_pages, fine,
+                            coarse_pages, coarse, wanted, px, py, distance, dx, dy, dz, pixel,
                         )
                     else:
                         colour = _surface(
-                            library, instances, textures, light, maps, view, wanted, owners[k], triangles[k],
-                            px, py, pz, distance, dx, dy, dz, pixel,
+                            faces, stands, texels, starts, per_metre, size, tones, clouds, light.haze_m, light.shadow,
+                            light.soft, light.lamps, frame, fine_pages, fine, coarse_pages, coarse, wanted, owners[k],
+                            triangles[k], px, py, pz, distance, dx, dy, dz, pixel,
                         )
                 red += same * colour[0]
                 green += same * colour[1]
                 blue += same * colour[2]
-            last = curve.shape[0] - 1
-            picture[y, x, 0] = curve[min(last, int(scale * max(red, 0.0) / count))]
-            picture[y, x, 1] = curve[min(last, int(scale * max(green, 0.0) / count))]
-            picture[y, x, 2] = curve[min(last, int(scale * max(blue, 0.0) / count))]
+            picture[y, x, 0] = curve[min(last, int(scale * max(red, 0.0)))]
+            picture[y, x, 1] = curve[min(last, int(scale * max(green, 0.0)))]
+            picture[y, x, 2] = curve[min(last, int(scale * max(blue, 0.0)))]
     return wanted[0] == 0

@@ -14,13 +14,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from reasoned_explorer.rendering.library import Library
-from reasoned_explorer.rendering.projection import Projection
 from reasoned_explorer.rendering.scene import Instances
 
 #: Texels along the side of a tile; around them `MARGIN` more, so that a look-up needs no second tile.
-SIDE, MARGIN = 256, 2
+_SHIFT = 8
+SIDE, MARGIN = 1 << _SHIFT, 2
 #: Edge of a texel of a fine and of a coarse tile, metres.
 FINE_M, COARSE_M = 0.0625, 0.25
+_PER_FINE, _PER_COARSE = 16.0, 4.0
 #: No shadow is drawn farther from the eye than this; they fade out before.
 REACH_M, FADE_M = 420.0, 320.0
 #: Fine tiles are used up to this distance at most.
@@ -33,55 +34,57 @@ class ShadowMaps(NamedTuple):
     """Tiles and where they lie.
 
     Attributes:
-        corner: South-west corner of both page tables on the ground, metres, shape (2,).
-        shear: How far a shadow falls to the east and to the north for each metre of height, shape (2,).
+        frame: South-west corner of both page tables on the ground, metres, and how far a shadow falls to the east and
+            to the north for each metre of height, shape (4,).
         fine_pages: Place of each fine tile in ``fine``, or -1, shape (rows, columns), int32.
         fine: Heights, shape (tiles, SIDE + 2 · MARGIN, likewise), uint16.
         coarse_pages: Likewise.
         coarse: Likewise.
     """
 
-    corner: NDArray[np.float64]
-    shear: NDArray[np.float64]
+    frame: NDArray[np.float64]
     fine_pages: NDArray[np.int32]
     fine: NDArray[np.uint16]
     coarse_pages: NDArray[np.int32]
     coarse: NDArray[np.uint16]
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
-def _filtered(tile: NDArray[np.uint16], u: float, v: float, height: float) -> float:
+@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+def _filtered(tiles: NDArray[np.uint16], page: int, u: float, v: float, height: int) -> float:
     """The share of 3 × 3 texels around a point (in texels) that nothing higher than ``height`` darkens, smoothly."""
     left, low = math.floor(u), math.floor(v)
+    first, row = left + MARGIN - 1, low + MARGIN - 1
+    lit = 0
     fu, fv = u - left, v - low
     total = 0.0
-    for j in range(-1, 3):
-        row = low + j + MARGIN
-        weight = 1.0 - fv if j == -1 else (fv if j == 2 else 1.0)
-        line = 0.0
-        if tile[row, left + MARGIN - 1] <= height:
-            line += 1.0 - fu
-        if tile[row, left + MARGIN] <= height:
-            line += 1.0
-        if tile[row, left + MARGIN + 1] <= height:
-            line += 1.0
-        if tile[row, left + MARGIN + 2] <= height:
-            line += fu
-        total += weight * line
-    return total / 9.0
+    for j in range(4):
+        outer_left = 1 if tiles[page, row + j, first] <= height else 0
+        inner = 1 if tiles[page, row + j, first + 1] <= height else 0
+        inner += 1 if tiles[page, row + j, first + 2] <= height else 0
+        outer_right = 1 if tiles[page, row + j, first + 3] <= height else 0
+        lit += outer_left + inner + outer_right
+        weight = 1.0 - fv if j == 0 else (fv if j == 3 else 1.0)
+        total += weight * (outer_left * (1.0 - fu) + inner + outer_right * fu)
+    if lit == 16:
+        return 1.0
+    return total * (1.0 / 9.0)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
 def sunlight_at(
-    maps: ShadowMaps, soft: bool, view: Projection, wanted: NDArray[np.uint8], x: float, y: float, z: float, nx: float,
-    ny: float, nz: float, distance: float, pixel: float,
+    frame: NDArray[np.float64], fine_pages: NDArray[np.int32], fine_tiles: NDArray[np.uint16],
+    coarse_pages: NDArray[np.int32], coarse_tiles: NDArray[np.uint16], soft: bool, wanted: NDArray[np.uint8], x: float,
+    y: float, z: float, nx: float, ny: float, nz: float, distance: float, pixel: float,
 ) -> float:
     """The share of the sun's light that reaches a point, in [0, 1].
 
     Args:
-        maps: The tiles.
+        frame: This and the next four are those of `ShadowMaps`.
+        fine_pages: Likewise.
+        fine_tiles: Likewise.
+        coarse_pages: Likewise.
+        coarse_tiles: Likewise.
         soft: Whether coarse tiles do everywhere.
-        view: The camera.
         wanted: Byte 0 is set where a tile is missing, and the byte of the tile: 1 + its place in the fine page table,
             then in the coarse one.
         x: East, metres.
@@ -102,28 +105,29 @@ def sunlight_at(
     x += offset * nx
     y += offset * ny
     z += offset * nz
-    ground_x = x + z * maps.shear[0] - maps.corner[0]
-    ground_y = y + z * maps.shear[1] - maps.corner[1]
-    edge = texel * SIDE
-    column, row = math.floor(ground_x / edge), math.floor(ground_y / edge)
-    pages = maps.fine_pages if fine else maps.coarse_pages
-    if not (0 <= row < pages.shape[0] and 0 <= column < pages.shape[1]):
+    ground_x = x + z * frame[2] - frame[0]
+    ground_y = y + z * frame[3] - frame[1]
+    per_texel = _PER_FINE if fine else _PER_COARSE
+    u, v = ground_x * per_texel, ground_y * per_texel
+    column, row = math.floor(u) >> _SHIFT, math.floor(v) >> _SHIFT
+    rows, columns = fine_pages.shape if fine else coarse_pages.shape
+    if not (0 <= row < rows and 0 <= column < columns):
         return 1.0
-    page = pages[row, column]
+    page = fine_pages[row, column] if fine else coarse_pages[row, column]
     if page < 0:
         wanted[0] = 1
-        place = row * pages.shape[1] + column
-        wanted[1 + place + (0 if fine else maps.fine_pages.size)] = 1
+        wanted[1 + row * columns + column + (0 if fine else fine_pages.size)] = 1
         return 1.0
-    u, v = (ground_x - column * edge) / texel - 0.5, (ground_y - row * edge) / texel - 0.5
-    height = (z + _BIAS_M) * _PER_METRE + 1.0
-    share = _filtered(maps.fine[page], u, v, height) if fine else _filtered(maps.coarse[page], u, v, height)
+    u -= column * SIDE + 0.5
+    v -= row * SIDE + 0.5
+    height = int((z + _BIAS_M) * _PER_METRE) + 1
+    share = _filtered(fine_tiles, page, u, v, height) if fine else _filtered(coarse_tiles, page, u, v, height)
     if distance > FADE_M:
         share += (1.0 - share) * (distance - FADE_M) / (REACH_M - FADE_M)
     return share
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
 def _cast_triangle(
     corners: NDArray[np.float64], a: int, b: int, c: int, tile: NDArray[np.uint16]
 ) -> None:

@@ -36,7 +36,7 @@ class ShadowTiles:
         self._gate = _Gate()
         self._making = threading.Lock()
         self.maps = ShadowMaps(
-            corner, shear, self._fine.table, self._fine.tiles, self._coarse.table, self._coarse.tiles
+            np.concatenate([corner, shear]), self._fine.table, self._fine.tiles, self._coarse.table, self._coarse.tiles
         )
 
     @property
@@ -64,14 +64,14 @@ class ShadowTiles:
         row, column = divmod(place, pages.table.shape[1])
         slot = pages.take()
         edge = pages.texel_m * SIDE
-        corner = self.maps.corner
+        frame = self.maps.frame
         cast(
             self._scene.library,
             self._scene.instances,
             self._footprints,
-            self.maps.shear,
-            float(corner[0] + column * edge),
-            float(corner[1] + row * edge),
+            frame[2:],
+            float(frame[0] + column * edge),
+            float(frame[1] + row * edge),
             pages.texel_m,
             pages.coarser,
             self._corners,

@@ -36,9 +36,12 @@ def object_models() -> dict[str, ModelSource]:
 
 @lru_cache(maxsize=None)
 def _source(name: str) -> ModelSource:
+    from reasoned_explorer.model import UnknownNameError
+    from reasoned_explorer.rendering.models import model_of, tints_of, variants_of
+
     try:
-        from reasoned_explorer.rendering.models import model_of, tints_of, variants_of
-    except ImportError:
+        model_of(name)
+    except UnknownNameError:
         return _boxes(name)
     models = [model_of(name, variant) for variant in range(variants_of(name))]
     return ModelSource(models.__getitem__, len(models), tuple(tints_of(name)))
@@ -46,7 +49,10 @@ def _source(name: str) -> ModelSource:
 
 def _boxes(name: str) -> ModelSource:
     colours = np.random.default_rng(sum(map(ord, name))).uniform(0.2, 0.9, (3, 3))
-    model = box_model(OBJECT_CLASSES[name].size_m, (0.9, 0.9, 0.9))
+    length_m, width_m, height_m = OBJECT_CLASSES[name].size_m
+    if OBJECT_CLASSES[name].kind == "vehicle":
+        length_m, width_m = width_m, length_m
+    model = box_model((length_m, width_m, height_m), (0.9, 0.9, 0.9))
     return ModelSource(lambda _: model, 1, tuple((float(r), float(g), float(b)) for r, g, b in colours))
 
 

@@ -112,22 +112,23 @@ def _recycling(builder: MeshBuilder, variant: int) -> None:
     order = ((0, 1, 2), (1, 0, 1))[variant]
     for place, kind in enumerate(order):
         surface, x = _CONTAINERS[kind], -0.8 + place * 1.6 / 3
-        if builder.detail == FAR:
-            rings = [[(x, -0.6, z), (x + 0.533, -0.6, z), (x + 0.533, 0.6, z), (x, 0.6, z)] for z in (0, 1.5)]
-            front = [0, 1, 2, 3]
-            builder.sheet(surface, [rings[0][2], rings[0][3], rings[1][3], rings[1][2]])
-            builder.sheet(surface, [rings[1][k] for k in front])
-            continue
         outline = [(-0.6, 0.06), (0.6, 0.06), (0.6, 1.0), (0.42, 1.36), (0.2, 1.5), (-0.2, 1.5), (-0.42, 1.36), (-0.6, 1.0)]
+        if builder.detail == FAR:
+            # Only what is seen: the front, the roof and the back of each, and the two ends.
+            faces = [[(-0.6, 0.0), (-0.5, 1.5)], [(-0.5, 1.5), (0.5, 1.5)], [(0.5, 1.5), (0.6, 0.0)]]
+            for (y0, z0), (y1, z1) in faces:
+                builder.decal(surface, [(x, y0, z0), (x + 0.5334, y0, z0), (x + 0.5334, y1, z1), (x, y1, z1)])
+            if place != 1:
+                end = x if place == 0 else x + 0.5334
+                corners = [(end, -0.6, 0), (end, -0.5, 1.5), (end, 0.5, 1.5), (end, 0.6, 0)]
+                builder.decal(surface, corners[::-1] if place == 0 else corners)
+            continue
         builder.extrude(surface, outline, "x", x + 0.012, x + 0.521)
         builder.box(DARK_STEEL, (x + 0.02, -0.5, 0), (x + 0.51, 0.5, 0.07))
         for face in (1, -1):
             plane = facing_front(0.61, x=x + 0.267) if face > 0 else facing_back(-0.61, x=x + 0.267)
             _three_arrows(builder, plane, (0.0, 0.55), 0.19)
             _opening(builder, x + 0.267, face)
-    if builder.detail == FAR:
-        for end, kind in ((-0.8, order[0]), (0.8, order[2])):
-            builder.sheet(_CONTAINERS[kind], [(end, -0.6, 0), (end, 0.6, 0), (end, 0.6, 1.5), (end, -0.6, 1.5)][::2] + [(end, 0.6, 0)])
 
 
 def _opening(builder: MeshBuilder, x: float, face: int) -> None:

@@ -63,7 +63,7 @@ def _fountain(builder: MeshBuilder, variant: int) -> None:
     sides = (28, 8)[variant % 2]
     if builder.detail == FAR:
         builder.cylinder(stone, (0, 0, 0), (0, 0, 0.62), 2.5, sides=17, capped=False)
-        ring = [(2.4 * math.cos(a), 2.4 * math.sin(a), 0.5) for a in np.arange(5) * 2 * math.pi / 5]
+        ring = [(2.4 * math.cos(a), 2.4 * math.sin(a), 0.56) for a in (np.arange(5) + 0.5) * 2 * math.pi / 5]
         builder.decal(WATER, ring)
         builder.cylinder(stone, (0, 0, 0.45), (0, 0, 2.5), 0.32, 0.1, sides=10, capped=False)
         builder.card(SPRAY, (0, 0, 0.5), 1.1, 1.0, 0.7)
