@@ -25,7 +25,7 @@ Place = tuple[float, float, float]
 #: Edge of the squares into which everything is cut, so that what is not seen is not drawn, metres.
 CHUNK_M = 32.0
 _PAINT_Z_M, _SLEEPER_Z_M, _RAIL_Z_M = 0.012, 0.02, 0.06
-_WHITE = np.array((0.96, 0.96, 0.94))
+_WHITE = np.array((0.90, 0.90, 0.88))
 _STEEL, _SLEEPER = np.array((0.62, 0.60, 0.58)), np.array((0.42, 0.37, 0.33))
 _UNMARKED = frozenset({"service", "track", "living_street", "driveway", "pedestrian", "alley"})
 _MAIN = frozenset({"motorway", "trunk", "primary", "secondary", "tertiary"})
