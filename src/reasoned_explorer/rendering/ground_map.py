@@ -37,7 +37,7 @@ GROUND_LOOKS: dict[Ground, GroundLook] = {
     Ground.PLAZA: GroundLook(Material.COBBLES, (0.84, 0.79, 0.71)),
     Ground.CYCLEWAY: GroundLook(Material.ASPHALT, (0.66, 0.38, 0.33)),
     Ground.PATH: GroundLook(Material.GRAVEL, (0.77, 0.71, 0.60)),
-    Ground.STEPS: GroundLook(Material.PLANKS, (0.76, 0.74, 0.71)),
+    Ground.STEPS: GroundLook(Material.STONE, (0.74, 0.72, 0.69)),
     Ground.GRASS: GroundLook(Material.GRASS, (0.41, 0.50, 0.28)),
     Ground.WOOD: GroundLook(Material.GRASS, (0.42, 0.39, 0.27)),
     Ground.GARDEN: GroundLook(Material.GRASS, (0.45, 0.55, 0.32)),
