@@ -42,8 +42,8 @@ class Maker:
             builder = MeshBuilder(detail=detail)
             self.make(builder, variant % self.variants)
             mesh = builder.mesh()
-            if not levels or len(mesh.triangles) < len(levels[-1].triangles):
-                levels.append(mesh)
+            # Where a coarser level saves nothing, the one before serves again.
+            levels.append(mesh if not levels or len(mesh.triangles) < len(levels[-1].triangles) else levels[-1])
         low, high = self._extent(levels[0], size_m)
         return Model(tuple(drawn_out(mesh, low, high) for mesh in levels), size_m, self.scaling)
 

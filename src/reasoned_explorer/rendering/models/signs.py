@@ -1,6 +1,7 @@
 """What tells people something: bus stops, road signs, traffic lights, boards, columns of posters."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from reasoned_explorer.rendering.lettering import (
     rectangle,
     write,
 )
+from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.mesh_builder import FAR, MeshBuilder, Surface
 from reasoned_explorer.rendering.models.maker import Maker
 from reasoned_explorer.rendering.models.palette import (
@@ -29,7 +31,6 @@ from reasoned_explorer.rendering.models.palette import (
     STEEL,
     plain,
 )
-from reasoned_explorer.rendering.material import Material
 
 _BACK = Surface(Material.METAL, (0.52, 0.54, 0.55))
 
@@ -186,7 +187,7 @@ def _visor(builder: MeshBuilder, height: float) -> None:
     steps = 6 if builder.detail == 0 else 4
     angles = np.linspace(-0.15, math.pi + 0.15, steps)
     rim = np.column_stack([0.125 * np.cos(angles), np.zeros(steps), height + 0.125 * np.sin(angles)])
-    for start, end in zip(rim[:-1], rim[1:], strict=True):
+    for start, end in pairwise(rim):
         out = np.array([0.0, 0.175, 0.0])
         base = np.array([0.0, 0.1, 0.0])
         builder.sheet(BLACK, [start + base, end + base, end + out, start + out])
@@ -245,7 +246,12 @@ def _map(builder: MeshBuilder, plane: Plane) -> None:
 
 
 _POSTERS = (
-    (0.85, 0.20, 0.18), (0.98, 0.82, 0.25), (0.16, 0.38, 0.66), (0.95, 0.94, 0.90), (0.20, 0.55, 0.40), (0.90, 0.50, 0.15)
+    (0.85, 0.20, 0.18),
+    (0.98, 0.82, 0.25),
+    (0.16, 0.38, 0.66),
+    (0.95, 0.94, 0.90),
+    (0.20, 0.55, 0.40),
+    (0.90, 0.50, 0.15),
 )
 
 

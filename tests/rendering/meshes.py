@@ -1,0 +1,93 @@
+"""What can be asked of a mesh: its parts, whether they are closed, which way they face, what holds them up."""
+
+import numpy as np
+
+from reasoned_explorer.rendering.mesh import Mesh
+
+
+def faces(mesh: Mesh):
+    """Return unit normals (m, 3) and areas (m,) of the triangles as they are wound."""
+    a, b, c = (mesh.vertices[mesh.triangles[:, k]].astype(np.float64) for k in range(3))
+    cross = np.cross(b - a, c - a)
+    length = np.linalg.norm(cross, axis=1)
+    return cross / np.maximum(length, 1e-30)[:, None], length / 2
+
+
+def welded(mesh: Mesh, grid_m: float = 2e-4):
+    """Return the triangles over places instead of vertices: corners at one place are one."""
+    keys = np.round(mesh.vertices.astype(np.float64) / grid_m).astype(np.int64)
+    _, place = np.unique(keys, axis=0, return_inverse=True)
+    return place.reshape(-1)[mesh.triangles]
+
+
+def parts(triangles):
+    """Return for each triangle the number of the part that it belongs to: what hangs together at corners."""
+    root = np.arange(triangles.max() + 1)
+    while True:
+        low = root[triangles].min(axis=1)
+        before = root.copy()
+        for k in range(3):
+            np.minimum.at(root, triangles[:, k], low)
+        root = root[root]
+        if (root == before).all():
+            break
+    _, part = np.unique(root[triangles[:, 0]], return_inverse=True)
+    return part.reshape(-1)
+
+
+def is_closed(triangles):
+    """Say whether every edge is passed once each way for each time that it is passed the other way."""
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    edges = edges[edges[:, 0] != edges[:, 1]]
+    forward = sorted(map(tuple, edges.tolist()))
+    return forward == sorted(map(tuple, edges[:, ::-1].tolist()))
+
+
+def signed_volume(mesh: Mesh, chosen):
+    corners = mesh.vertices[mesh.triangles[chosen]].astype(np.float64)
+    corners -= corners.reshape(-1, 3).mean(axis=0)
+    return float(np.einsum("mk,mk->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
+
+
+def is_backed(mesh: Mesh, chosen, within_m: float):
+    """Say whether close behind the middle of a flat one-sided part there is another face, or the ground."""
+    normals, areas = faces(mesh)
+    index = np.flatnonzero(chosen)
+    largest = index[areas[index].argmax()]
+    start = mesh.vertices[mesh.triangles[largest]].astype(np.float64).mean(axis=0)
+    way = -normals[largest]
+    if way[2] < -0.5 and start[2] <= within_m:
+        return True
+    others = ~chosen
+    a, b, c = (mesh.vertices[mesh.triangles[others][:, k]].astype(np.float64) for k in range(3))
+    e1, e2 = b - a, c - a
+    p = np.cross(way, e2)
+    det = np.einsum("mk,mk->m", e1, p)
+    good = np.abs(det) > 1e-12
+    inverse = np.where(good, 1 / np.where(good, det, 1), 0)
+    s = start - a
+    u = np.einsum("mk,mk->m", s, p) * inverse
+    q = np.cross(s, e1)
+    v = (q @ way) * inverse
+    t = np.einsum("mk,mk->m", e2, q) * inverse
+    return bool((good & (u >= -1e-6) & (v >= -1e-6) & (u + v <= 1 + 1e-6) & (t > 1e-5) & (t <= within_m)).any())
+
+
+def floating(mesh: Mesh, part, gap_m: float):
+    """Return the parts that neither stand on the ground nor touch (as boxes, within a gap) what does."""
+    count = part.max() + 1
+    corners = mesh.vertices[mesh.triangles].astype(np.float64)
+    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+    np.minimum.at(low, part, corners.min(axis=1))
+    np.maximum.at(high, part, corners.max(axis=1))
+    held = low[:, 2] <= gap_m
+    while True:
+        loose = np.flatnonzero(~held)
+        holding = np.flatnonzero(held)
+        if not len(loose) or not len(holding):
+            return loose
+        apart = np.maximum(low[loose][:, None] - high[holding][None], low[holding][None] - high[loose][:, None])
+        touching = (apart.max(axis=2) <= gap_m).any(axis=1)
+        if not touching.any():
+            return loose
+        held[loose[touching]] = True
