@@ -38,9 +38,9 @@ def parts(triangles):
 def is_closed(triangles):
     """Say whether every edge is passed once each way for each time that it is passed the other way."""
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    edges = edges[edges[:, 0] != edges[:, 1]]
-    forward = sorted(map(tuple, edges.tolist()))
-    return forward == sorted(map(tuple, edges[:, ::-1].tolist()))
+    edges = edges[edges[:, 0] != edges[:, 1]].astype(np.int64)
+    size = int(edges.max(initial=0)) + 1
+    return bool((np.sort(edges[:, 0] * size + edges[:, 1]) == np.sort(edges[:, 1] * size + edges[:, 0])).all())
 
 
 def signed_volume(mesh: Mesh, chosen):
@@ -91,3 +91,29 @@ def floating(mesh: Mesh, part, gap_m: float):
         if not touching.any():
             return loose
         held[loose[touching]] = True
+
+
+def seen_from(mesh: Mesh, heading_rad: float, *, samples: int = 12000, cells: int = 40):
+    """Return the triangle that is nearest in each filled cell of a coarse picture without perspective.
+
+    Points are strewn evenly over the faces that look at the viewer, who stands at a heading from the mesh, a little up.
+    """
+    view = np.array([np.sin(heading_rad), np.cos(heading_rad), 0.3])
+    view /= np.linalg.norm(view)
+    right = np.array([-np.cos(heading_rad), np.sin(heading_rad), 0.0])
+    normals, areas = faces(mesh)
+    weight = areas * np.maximum(normals @ view, 0)
+    place = np.searchsorted(np.cumsum(weight) / weight.sum(), (np.arange(samples) + 0.5) / samples).clip(
+        max=len(areas) - 1
+    )
+    u, v = (np.arange(samples) * 0.7548776662 % 1.0, np.arange(samples) * 0.5698402910 % 1.0)
+    over = u + v > 1
+    u, v = np.where(over, 1 - u, u), np.where(over, 1 - v, v)
+    a, b, c = (mesh.vertices[mesh.triangles[place, k]].astype(np.float64) for k in range(3))
+    points = a + u[:, None] * (b - a) + v[:, None] * (c - a)
+    flat = np.column_stack([points @ right, points @ np.cross(right, view)])
+    cell = (np.ptp(flat, axis=0).max() / cells) + 1e-9
+    keys = np.floor((flat - flat.min(axis=0)) / cell).astype(np.int64) @ np.array([10_000, 1])
+    order = np.lexsort([-(points @ view), keys])
+    first = np.concatenate([[True], np.diff(keys[order]) != 0])
+    return place[order[first]]

@@ -80,9 +80,9 @@ def _museum(builder: MeshBuilder, variant: int) -> None:
     dark = stone.shaded(0.72)
     if builder.detail == FAR:
         builder.box(stone, (-4, 0, 0), (4, 0.5, 0.3))
-        builder.decal(dark, facing_front(0.1).points(rectangle(0, 1.75, 7.4, 2.9)))
-        builder.decal(_CARPET, facing_front(0.2).points(rectangle(0, 1.8, 1.6, 2.4)))
-        builder.decal(stone, facing_front(0.45).points([(-4, 3.2), (4, 3.2), (4, 3.8), (0, 5.0), (-4, 3.8)]))
+        builder.sheet(dark, facing_front(0.35).points(rectangle(0, 1.75, 7.4, 2.9)))
+        builder.decal(_CARPET, facing_front(0.4).points(rectangle(0, 1.8, 1.6, 2.4)))
+        builder.sheet(stone, facing_front(0.45).points([(-4, 3.2), (4, 3.2), (4, 3.8), (0, 5.0), (-4, 3.8)]))
         return
     builder.box(dark, (-3.9, 0, 0), (3.9, 0.07, 3.3))
     for step, deep in enumerate((0.5, 0.42, 0.34)):

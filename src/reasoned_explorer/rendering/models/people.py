@@ -181,4 +181,4 @@ def _head(builder: MeshBuilder, who: _Person) -> None:
         builder.box(plain(0.62, 0.30, 0.28), (-0.022, 0.098, 1.572), (0.022, 0.113, 1.581))
 
 
-MAKERS = {"person": Maker(_person, variants=len(_PEOPLE), tints=_CLOTHES, scaling="uniform", fits=False)}
+MAKERS = {"person": Maker(_person, variants=len(_PEOPLE), tints=_CLOTHES, scaling="uniform", fits="none")}

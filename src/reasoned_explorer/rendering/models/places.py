@@ -202,7 +202,8 @@ def _atm(builder: MeshBuilder, variant: int) -> None:
     """A cash machine: the word ATM in light, a screen, keys, a slot with notes."""
     body = (plain(0.10, 0.25, 0.52), plain(0.72, 0.10, 0.10))[variant]
     if builder.detail == FAR:
-        builder.box(body, (-0.5, 0, 0), (0.5, 0.3, 1.8))
+        mixed = plain(*(0.72 * part + 0.25 for part in body.colour))
+        builder.box(mixed, (-0.5, 0, 0), (0.5, 0.3, 1.8))
         builder.decal(SIGN_WHITE.shaded(0.8), facing_front(0.31).points(rectangle(0, 1.62, 0.8, 0.26)))
         builder.decal(plain(0.45, 0.55, 0.60), facing_front(0.31).points(rectangle(0, 1.2, 0.6, 0.4)))
         return

@@ -39,7 +39,8 @@ def _swing(builder: MeshBuilder, variant: int) -> None:
         for x in (-1.45, 1.45):
             builder.sheet(frame, [(x, -0.75, 0), (x, -0.62, 0), (x, 0, 2.2), (x, 0.62, 0), (x, 0.75, 0), (x, 0, 2.3)])
         builder.sheet(frame, [(-1.5, 0, 2.2), (1.5, 0, 2.2), (1.5, 0, 2.3), (-1.5, 0, 2.3)])
-        builder.sheet(DARK_STEEL, [(-0.9, 0.1, 0.45), (0.9, 0.1, 0.45), (0.9, -0.1, 0.5)])
+        for x in (-0.7, 0.7):
+            builder.sheet(STEEL, [(x - 0.22, 0, 0.48), (x + 0.22, 0, 0.48), (x, 0, 2.22)])
         return
     for x in (-1.42, 1.42):
         for y in (-0.7, 0.7):
@@ -52,7 +53,7 @@ def _swing(builder: MeshBuilder, variant: int) -> None:
         builder.box(seat, (x - 0.24, out - 0.11, 0.48), (x + 0.24, out + 0.11, 0.53), bevel=0.012)
         for side in (-0.21, 0.21):
             builder.cylinder(STEEL, (x + side, out, 0.5), (x + side, 0, 2.22), 0.014, sides=5, capped=False)
-        if builder.detail == 0:
+        if builder.detail <= 2:
             builder.decal(_MAT, _GROUND.points(rectangle(x, 0, 0.9, 1.4)))
 
 
@@ -96,7 +97,7 @@ def _playground(builder: MeshBuilder, variant: int) -> None:
             builder.card(SIGN_RED, (x, 3.6, 0), 0.7, 2.3, math.pi / 2)
         for y in (2.5, 4.7):
             builder.card(SIGN_BLUE, (5, y, 0), 1.2, 2.3)
-        builder.sheet(SIGN_YELLOW, [(-6.5, 4.3, 0.1), (-3.4, 4.3, 0.8), (-3.4, 4.6, 0.8)])
+        builder.sheet(SIGN_YELLOW, [(-6.5, 4.3, 0.0), (-3.4, 4.3, 0.75), (-5.0, 4.3, 0.0)])
         return
     _sandpit(builder)
     _climbing_frame(builder, variant)
@@ -164,7 +165,7 @@ def _tower(builder: MeshBuilder) -> None:
                 0.05,
             )
         for x in (4.4, 5.6):
-            builder.beam(STEEL, (x, 4.98, 0), (x, 4.4, 1.3), 0.06, 0.06)
+            builder.beam(STEEL, (x, 4.97, 0.03), (x, 4.4, 1.3), 0.06, 0.06)
 
 
 def _seesaw(builder: MeshBuilder) -> None:
@@ -229,7 +230,8 @@ def _circle_line(builder: MeshBuilder, radius: float, width: float) -> None:
 def _goal(builder: MeshBuilder, side: int) -> None:
     x, half, high = side * 14.9, 1.9, 2.1
     if builder.detail == FAR:
-        builder.sheet(SIGN_WHITE, [(x, -half, high - 0.15), (x, half, high - 0.15), (x, half, high), (x, -half, high)])
+        net = plain(0.70, 0.72, 0.72)
+        builder.sheet(net, [(x, -half, 0), (x, half, 0), (x, half, high), (x, -half, high)])
         return
     post = 0.06
     for y in (-half, half):
@@ -259,6 +261,7 @@ def _court(builder: MeshBuilder) -> None:
         x = side * 14.6
         if builder.detail == FAR:
             builder.sheet(SIGN_WHITE, [(x, -0.9, 2.9), (x, 0.9, 2.9), (x, 0.9, 4.0), (x, -0.9, 4.0)])
+            builder.sheet(DARK_STEEL, [(x, -0.12, 0), (x, 0.12, 0), (x, 0, 3.1)])
             continue
         builder.cylinder(DARK_STEEL, (x, 0, 0), (x, 0, 3.3), 0.09, sides=10)
         board = x - side * 0.7
@@ -280,7 +283,7 @@ def _lawn(builder: MeshBuilder, variant: int) -> None:
 MAKERS = {
     "swing": Maker(_swing, variants=2),
     "slide": Maker(_slide, variants=2),
-    "playground": Maker(_playground, variants=2, fits=False),
-    "pitch": Maker(_pitch, variants=2, fits=False),
-    "lawn": Maker(_lawn, fits=False),
+    "playground": Maker(_playground, variants=2, fits="none"),
+    "pitch": Maker(_pitch, variants=2, fits="none"),
+    "lawn": Maker(_lawn, fits="none"),
 }

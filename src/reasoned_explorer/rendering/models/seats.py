@@ -39,7 +39,7 @@ def _bench(builder: MeshBuilder, variant: int) -> None:
         builder.beam(slats, (-0.9, y, z), (0.9, y, z), 0.035, 0.1, up=(0, -0.22, 1))
     if not fine:
         builder.box(slats, (-0.9, -0.18, 0.42), (0.9, 0.3, 0.465))
-        builder.beam(slats, (-0.9, -0.23, 0.68), (0.9, -0.23, 0.68), 0.035, 0.34, up=(0, -0.22, 1))
+        builder.beam(slats, (-0.9, -0.23, 0.64), (0.9, -0.23, 0.64), 0.035, 0.42, up=(0, -0.22, 1))
     wide = 0.14 if frame is CONCRETE else 0.06
     for x in (-0.72, 0.72):
         builder.beam(frame, (x, 0.24, 0), (x, 0.24, 0.43), wide, 0.07, up=(0, 1, 0))

@@ -66,16 +66,15 @@ def _fountain(builder: MeshBuilder, variant: int) -> None:
         builder.cylinder(stone, (0, 0, 0), (0, 0, 0.62), 2.5, sides=17, capped=False)
         ring = [(2.4 * math.cos(a), 2.4 * math.sin(a), 0.56) for a in (np.arange(5) + 0.5) * 2 * math.pi / 5]
         builder.decal(WATER, ring)
-        builder.cylinder(stone, (0, 0, 0.45), (0, 0, 2.5), 0.32, 0.1, sides=10, capped=False)
-        builder.card(SPRAY, (0, 0, 0.5), 1.1, 1.0, 0.7)
+        builder.cylinder(stone.shaded(1.1), (0, 0, 0.45), (0, 0, 2.5), 0.4, 0.1, sides=10, capped=False)
+        builder.card(SPRAY, (0, 0, 0.5), 2.2, 1.3, 0.7)
         return
     count = max(8, builder.sides(sides)) if sides > 8 else 8
     profile = [(2.5, 0.0), (2.5, 0.08), (2.38, 0.12), (2.38, 0.48), (2.5, 0.54), (2.5, 0.62), (2.12, 0.62), (2.12, 0.1)]
     if builder.detail == 2:
         profile = [(2.5, 0.0), (2.45, 0.62), (2.12, 0.62), (2.12, 0.1)]
     _ring_of(builder, stone, profile, count)
-    surface = [(2.13 * math.cos(a), 2.13 * math.sin(a), 0.46) for a in (np.arange(count) + 0.5) * 2 * math.pi / count]
-    builder.decal(WATER, surface)
+    builder.lathe(WATER, [(2.13, 0.3), (2.13, 0.46)], sides=sides)
     if variant < 2:
         _bowls(builder, stone)
     else:
