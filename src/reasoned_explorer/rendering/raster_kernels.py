@@ -28,10 +28,12 @@ BLOCK = 1 << SHIFT
 GROUND_REACH_M = 10_000.0
 BUCKETS = 512
 _SLACK = 1e-6
+#: What is in one place with what was drawn before it, up to rounding, stays behind it: no speckles.
+_NEARER = 1.0 + 1e-6
 _LEAST_NEARNESS = 1.0 / GROUND_REACH_M
 _MOST_NEARNESS = 1.0 / NEAR_M
 #: Things that fill less than this across are left out, pixels.
-_LEAST_SIZE = 0.7
+LEAST_SIZE = 0.7
 
 
 class Canvas(NamedTuple):
@@ -314,7 +316,7 @@ def _fill_triangle(
             if (edge0 == 0.0 and not owns0) or (edge1 == 0.0 and not owns1) or (edge2 == 0.0 and not owns2):
                 continue
             nearness = np.float32((edge0 + edge1 + edge2) * inverse)
-            if nearness > canvas.nearness[y, x] and nearness <= _MOST_NEARNESS:
+            if nearness > canvas.nearness[y, x] * _NEARER and nearness <= _MOST_NEARNESS:
                 canvas.nearness[y, x] = nearness
                 canvas.owners[y, x] = owner
                 canvas.triangles[y, x] = triangle
@@ -366,7 +368,7 @@ def _collect(
                     continue
                 x, y, z = ball[0] - view.eye[0], ball[1] - view.eye[1], ball[2] - view.eye[2]
                 size = 2.0 * ball[3] * pixels
-                if size * size < _LEAST_SIZE * _LEAST_SIZE * (x * x + y * y + z * z):
+                if size * size < LEAST_SIZE * LEAST_SIZE * (x * x + y * y + z * z):
                     continue
             _matrix_of(instances, i, view, matrix)
             nearest = _bound(library.boxes[instances.prototypes[i]], matrix, view, scratch.rectangles[count])
