@@ -4,12 +4,10 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reasoned_explorer.rendering.projection import Projection
-from reasoned_explorer.rendering.raster_kernels import _fill_triangle
+from reasoned_explorer.rendering.raster_kernels import fill_triangle
 from reasoned_explorer.rendering.renderer import _new_canvas
 
 SIDE = 24
-VIEW = Projection(np.zeros(3), np.eye(3), SIDE / 2.0, SIDE / 2.0, SIDE / 2.0, SIDE, SIDE, 1)
 #: On sample centres, between them and anywhere: ties are what goes wrong.
 coordinates = st.one_of(st.integers(-4, SIDE + 4).map(lambda n: n + 0.5), st.floats(-20.0, SIDE + 20.0))
 depths = st.floats(0.2, 50.0)
@@ -23,7 +21,7 @@ def covered(points: np.ndarray, depth: np.ndarray, triangle: tuple[int, int, int
         canvas = _new_canvas(SIDE, SIDE)
         canvas.nearness[:] = 0.0
         canvas.owners[:] = -1
-        _fill_triangle(corners, a, b, c, 5, 0, VIEW, canvas)
+        fill_triangle(corners, a, b, c, 5, 0, canvas.nearness, canvas.owners, canvas.triangles)
         assert not (found & (canvas.owners == 5)).any()
         found |= canvas.owners == 5
     return found
@@ -64,7 +62,7 @@ def test_a_floor_that_passes_below_the_eye_is_whole(x, height) -> None:
             canvas = _new_canvas(SIDE, SIDE)
             canvas.nearness[:] = 0.0
             canvas.owners[:] = -1
-            _fill_triangle(corners, a, b, c, 5, 0, VIEW, canvas)
+            fill_triangle(corners, a, b, c, 5, 0, canvas.nearness, canvas.owners, canvas.triangles)
             hits += canvas.owners == 5
     rows = np.arange(SIDE) + 0.5 - SIDE / 2
     depth = np.where(rows > 0, height * SIDE / 2 / np.maximum(rows, 1e-9), np.inf)

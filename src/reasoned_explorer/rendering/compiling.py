@@ -17,11 +17,17 @@ _OPTIONS: dict[str, Any] = {
 
 def kernel(function: F) -> F:
     """Return a function compiled for plain arrays and numbers; it makes no arrays and lets other threads run."""
-    compiled: F = njit(**_OPTIONS)(function)
+    compiled: F = njit(**_OPTIONS, no_cfunc_wrapper=True)(function)
+    return compiled
+
+
+def part(function: F) -> F:
+    """Return a function that kernels call and Python cannot, which saves a third of the time to compile it."""
+    compiled: F = njit(**_OPTIONS, no_cfunc_wrapper=True, no_cpython_wrapper=True)(function)
     return compiled
 
 
 def inlined(function: F) -> F:
-    """Return a function compiled as `kernel` does, as a part of what calls it."""
-    compiled: F = njit(**_OPTIONS, forceinline=True)(function)
+    """Return a `part` that becomes a piece of each of its callers: for those that take many arrays."""
+    compiled: F = njit(**_OPTIONS, no_cfunc_wrapper=True, no_cpython_wrapper=True, forceinline=True)(function)
     return compiled
