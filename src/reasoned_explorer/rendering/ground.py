@@ -5,8 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from reasoned_explorer.rendering.crossings import crossings_of
 from reasoned_explorer.rendering.ground_map import ground_colours, ground_map_of, ground_materials
 from reasoned_explorer.rendering.library import linear_from_srgb
+from reasoned_explorer.rendering.markings import markings_of
 from reasoned_explorer.rendering.mesh import Model
 from reasoned_explorer.world.world import World
 
@@ -32,6 +34,8 @@ class GroundMap:
 
 def ground_of(world: World) -> GroundMap:
     """Return a world's ground."""
-    raster = ground_map_of(world)
+    crossings = crossings_of(world)
+    raster = ground_map_of(world, crossings=crossings)
+    markings = tuple(markings_of(world, raster, crossings=crossings))
     corner = np.array([raster.min_x_m, raster.min_y_m, raster.cell_m])
-    return GroundMap(raster.codes, corner, ground_materials(), linear_from_srgb(ground_colours()))
+    return GroundMap(raster.codes, corner, ground_materials(), linear_from_srgb(ground_colours()), markings)

@@ -90,5 +90,5 @@ def surfaces_of(library: Library, instances: Instances) -> Surfaces:
         axis=1,
         dtype=np.float32,
     )
-    stands = np.column_stack([instances.places, instances.turns, instances.scales, instances.tints])
+    stands = np.column_stack([instances.places, instances.turns, 1.0 / instances.scales, instances.tints])
     return Surfaces(np.ascontiguousarray(faces), np.ascontiguousarray(stands, np.float64))

@@ -12,9 +12,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from reasoned_explorer.rendering.compiling import kernel
 from reasoned_explorer.rendering.library import Library
 from reasoned_explorer.rendering.projection import NEAR_M, Projection
 from reasoned_explorer.rendering.scene import Cells, Instances
@@ -26,12 +26,14 @@ SHIFT = 3
 BLOCK = 1 << SHIFT
 #: The ground ends here, metres along the view's axis.
 GROUND_REACH_M = 10_000.0
-_BUCKETS = 512
+BUCKETS = 512
 _SLACK = 1e-6
+#: What is in one place with what was drawn before it, up to rounding, stays behind it: no speckles.
+_NEARER = 1.0 + 1e-6
 _LEAST_NEARNESS = 1.0 / GROUND_REACH_M
 _MOST_NEARNESS = 1.0 / NEAR_M
 #: Things that fill less than this across are left out, pixels.
-_LEAST_SIZE = 0.7
+LEAST_SIZE = 0.7
 
 
 class Canvas(NamedTuple):
@@ -62,6 +64,9 @@ class Scratch(NamedTuple):
         nearest: Greatest nearness of each candidate, shape (n,), float64.
         rectangles: First and last column and row of each candidate, shape (n, 4), int32.
         levels: Level at which each instance was drawn, or -1, shape (n,), int8.
+        keys: For sorting, shape (n,), int32.
+        buckets: Likewise, shape (BUCKETS + 1,), int32.
+        matrix: Shape (3, 4).
     """
 
     corners: NDArray[np.float64]
@@ -70,9 +75,12 @@ class Scratch(NamedTuple):
     nearest: NDArray[np.float64]
     rectangles: NDArray[np.int32]
     levels: NDArray[np.int8]
+    keys: NDArray[np.int32]
+    buckets: NDArray[np.int32]
+    matrix: NDArray[np.float64]
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def _fill_background(view: Projection, canvas: Canvas) -> None:
     """The plane z = 0 where it is seen, else the sky; the view has no roll, so that it is the same along a row."""
     for y in range(view.height):
@@ -91,7 +99,7 @@ def _fill_background(view: Projection, canvas: Canvas) -> None:
     canvas.stale[:] = 1
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def _matrix_of(instances: Instances, i: int, view: Projection, matrix: NDArray[np.float64]) -> None:
     """Set a (3, 4) matrix from an instance's own frame to homogeneous picture coordinates."""
     sine, cosine = instances.turns[i, 0], instances.turns[i, 1]
@@ -115,7 +123,7 @@ def _matrix_of(instances: Instances, i: int, view: Projection, matrix: NDArray[n
         matrix[row, 3] = a * x + b * y + c * z
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def _ball_in_view(ball: NDArray[np.float64], view: Projection) -> bool:
     """Whether a sphere may reach into the view."""
     x, y, z = ball[0] - view.eye[0], ball[1] - view.eye[1], ball[2] - view.eye[2]
@@ -132,7 +140,7 @@ def _ball_in_view(ball: NDArray[np.float64], view: Projection) -> bool:
     return down <= ahead * slope + radius * math.sqrt(1.0 + slope * slope)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def _bound(
     box: NDArray[np.float64], matrix: NDArray[np.float64], view: Projection, rectangle: NDArray[np.int32]
 ) -> float:
@@ -163,7 +171,7 @@ def _bound(
     return 1.0 / max(least_z, NEAR_M)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def _refresh(canvas: Canvas, row: int, column: int) -> None:
     least = np.float32(1e30)
     height, width = canvas.nearness.shape
@@ -174,7 +182,7 @@ def _refresh(canvas: Canvas, row: int, column: int) -> None:
     canvas.stale[row, column] = 0
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def _hidden(canvas: Canvas, rectangle: NDArray[np.int32], nearest: float) -> bool:
     """Whether all that a rectangle covers is nearer than ``nearest`` already."""
     for row in range(rectangle[2] >> SHIFT, (rectangle[3] >> SHIFT) + 1):
@@ -188,14 +196,14 @@ def _hidden(canvas: Canvas, rectangle: NDArray[np.int32], nearest: float) -> boo
     return True
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def _mark_stale(canvas: Canvas, rectangle: NDArray[np.int32]) -> None:
     for row in range(rectangle[2] >> SHIFT, (rectangle[3] >> SHIFT) + 1):
         for column in range(rectangle[0] >> SHIFT, (rectangle[1] >> SHIFT) + 1):
             canvas.stale[row, column] = 1
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def _level_of(
     library: Library, instances: Instances, i: int, distance: float, pixels: float, density: float
 ) -> int:
@@ -210,7 +218,7 @@ def _level_of(
     return count - 1
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def _cross_near(
     corners: NDArray[np.float64], a: int, b: int, bounds: tuple[float, float, float, float]
 ) -> tuple[float, float, float, float]:
@@ -224,7 +232,7 @@ def _cross_near(
     return min(bounds[0], x - 0.5), max(bounds[1], x + 0.5), min(bounds[2], y - 0.5), max(bounds[3], y + 0.5)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def _bounds_across_near(corners: NDArray[np.float64], a: int, b: int, c: int) -> tuple[float, float, float, float]:
     """What a triangle that goes through the near plane covers at most."""
     bounds = (1e30, -1e30, 1e30, -1e30)
@@ -237,7 +245,7 @@ def _bounds_across_near(corners: NDArray[np.float64], a: int, b: int, c: int) ->
     return _cross_near(corners, c, a, bounds)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def _narrow(slope: float, rest: float, low: float, high: float) -> tuple[float, float]:
     """Where slope · x + rest ≥ 0, between low and high, a little too wide."""
     if slope > 0.0:
@@ -247,7 +255,7 @@ def _narrow(slope: float, rest: float, low: float, high: float) -> tuple[float, 
     return low, high
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def _fill_triangle(
     corners: NDArray[np.float64], a: int, b: int, c: int, owner: int, triangle: int, view: Projection, canvas: Canvas
 ) -> None:
@@ -308,13 +316,13 @@ def _fill_triangle(
             if (edge0 == 0.0 and not owns0) or (edge1 == 0.0 and not owns1) or (edge2 == 0.0 and not owns2):
                 continue
             nearness = np.float32((edge0 + edge1 + edge2) * inverse)
-            if nearness > canvas.nearness[y, x] and nearness <= _MOST_NEARNESS:
+            if nearness > canvas.nearness[y, x] * _NEARER and nearness <= _MOST_NEARNESS:
                 canvas.nearness[y, x] = nearness
                 canvas.owners[y, x] = owner
                 canvas.triangles[y, x] = triangle
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def _draw_level(
     library: Library, level: int, matrix: NDArray[np.float64], owner: int, view: Projection, canvas: Canvas,
     corners: NDArray[np.float64],
@@ -341,7 +349,7 @@ def _draw_level(
         )
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def _collect(
     library: Library, instances: Instances, cells: Cells, view: Projection, everything: bool, scratch: Scratch,
     matrix: NDArray[np.float64],
@@ -360,7 +368,7 @@ def _collect(
                     continue
                 x, y, z = ball[0] - view.eye[0], ball[1] - view.eye[1], ball[2] - view.eye[2]
                 size = 2.0 * ball[3] * pixels
-                if size * size < _LEAST_SIZE * _LEAST_SIZE * (x * x + y * y + z * z):
+                if size * size < LEAST_SIZE * LEAST_SIZE * (x * x + y * y + z * z):
                     continue
             _matrix_of(instances, i, view, matrix)
             nearest = _bound(library.boxes[instances.prototypes[i]], matrix, view, scratch.rectangles[count])
@@ -371,22 +379,22 @@ def _collect(
     return count
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def _order(scratch: Scratch, count: int) -> None:
     """Order candidates roughly from near to far."""
-    starts = np.zeros(_BUCKETS + 1, np.int32)
-    keys = np.empty(count, np.int32)
+    starts, keys = scratch.buckets, scratch.keys
+    starts[:] = 0
     for k in range(count):
-        keys[k] = min(_BUCKETS - 1, int(40.0 * math.log2(1.0 + 1.0 / scratch.nearest[k])))
+        keys[k] = min(BUCKETS - 1, int(40.0 * math.log2(1.0 + 1.0 / scratch.nearest[k])))
         starts[keys[k] + 1] += 1
-    for bucket in range(_BUCKETS):
+    for bucket in range(BUCKETS):
         starts[bucket + 1] += starts[bucket]
     for k in range(count):
         scratch.ordered[starts[keys[k]]] = k
         starts[keys[k]] += 1
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def draw(
     library: Library, instances: Instances, cells: Cells, view: Projection, density: float, everything: bool,
     canvas: Canvas, scratch: Scratch,
@@ -404,7 +412,7 @@ def draw(
         scratch: Room; its ``levels`` say what was drawn.
     """
     _fill_background(view, canvas)
-    matrix = np.empty((3, 4))
+    matrix = scratch.matrix
     scratch.levels[:] = -1
     count = _collect(library, instances, cells, view, everything, scratch, matrix)
     _order(scratch, count)
@@ -428,7 +436,7 @@ def draw(
         _mark_stale(canvas, rectangle)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def read_out(
     canvas: Canvas, ids: NDArray[np.int32], view: Projection, depth: NDArray[np.float32], found: NDArray[np.int32]
 ) -> None:
@@ -454,7 +462,7 @@ def read_out(
             depth[y, x] = np.float32(1.0) / nearness if nearness > 0.0 else np.float32(np.inf)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def _most_seen(canvas: Canvas, ids: NDArray[np.int32], row: int, column: int) -> tuple[int, float]:
     """The owner of most of a pixel's four samples, the nearest of equals, and its greatest nearness."""
     best, most, nearest = SKY, 0, np.float32(-1.0)
@@ -470,7 +478,7 @@ def _most_seen(canvas: Canvas, ids: NDArray[np.int32], row: int, column: int) ->
     return best, nearest
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def _id_of(owner: int, ids: NDArray[np.int32]) -> int:
     if owner >= 0:
         return ids[owner]

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reasoned_explorer.model.draws import choice, key_of
+from reasoned_explorer.rendering.buildings import models_of_buildings
 from reasoned_explorer.rendering.ground import GroundMap, ground_of
 from reasoned_explorer.rendering.library import Library, linear_from_srgb, pack
 from reasoned_explorer.rendering.mesh import Model
-from reasoned_explorer.rendering.sources import ModelSource, building_model, object_models
+from reasoned_explorer.rendering.sources import ModelSource, object_models
 from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.taxonomy import CLASS_NAMES
 from reasoned_explorer.world.world import World, WorldObject
@@ -114,8 +115,7 @@ class Scene:
         first_object = FIRST_BUILDING_ID + len(plain.buildings)
         ground = ground_of(plain)
         things = [Placed(mesh, GROUND_ID, place) for mesh, place in ground.markings]
-        for k, building in enumerate(plain.buildings):
-            model, place = building_model(building, seed=key_of(looks, "building", k))
+        for k, (model, place) in enumerate(models_of_buildings(plain.buildings, seed=looks)):
             things.append(Placed(model, FIRST_BUILDING_ID + k, place))
         sources = object_models()
         things += [_placed(item, sources, looks, first_object + item.id) for item in plain.objects]
@@ -151,8 +151,8 @@ def _placed(item: WorldObject, sources: Mapping[str, ModelSource], seed: int, in
 
 def _scale(model: Model, item: WorldObject) -> tuple[float, float, float]:
     size_m = item.size_m
-    if item.object_class.kind == "vehicle":  # its length lies ahead
-        size_m = (size_m[1], size_m[0], size_m[2])
+    if item.object_class.kind == "vehicle":  # its length lies ahead, whichever way round the size was given
+        size_m = (min(size_m[:2]), max(size_m[:2]), size_m[2])
 
     def ratio(axis: int) -> float:
         natural = model.size_m[axis]

@@ -7,9 +7,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from reasoned_explorer.rendering.compiling import inlined, kernel
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.projection import Projection
 from reasoned_explorer.rendering.raster_kernels import GROUND, SKY, Canvas
@@ -50,7 +50,7 @@ class Surfaces(NamedTuple):
     Attributes:
         faces: Of each triangle of the library: first corner, the edges from it to the second and to the third, normals
             and texture coordinates at the corners, colour in linear light, material; shape (t, 28), float32.
-        stands: Of each instance: place, sine and cosine of its heading, scale, tint; shape (n, 11), float64.
+        stands: Of each instance: place, sine and cosine of its heading, 1 / scale, tint; shape (n, 11), float64.
     """
 
     faces: NDArray[np.float32]
@@ -104,7 +104,17 @@ class Light(NamedTuple):
 SUN, SUNLIGHT, SKYLIGHT, BOUNCE, ZENITH, HORIZON, GLOW, CLOUD = range(8)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
+def _halvings(size: float, most: int) -> tuple[int, float]:
+    """How often a size can be halved until it is below 2, at most ``most`` times, and what is left, at least 1."""
+    count = 0
+    while size >= 2.0 and count < most:
+        size *= 0.5
+        count += 1
+    return count, min(max(size, 1.0), 2.0)
+
+
+@inlined
 def _level_texel(t: Texels, starts: Ints, size: int, material: int, u: float, v: float, level: int) -> Rgb:
     """A texture's colour, bilinear in one level; u and v count repetitions."""
     side = size >> level
@@ -125,26 +135,28 @@ def _level_texel(t: Texels, starts: Ints, size: int, material: int, u: float, v:
     )
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _texel(
     texels: Texels, starts: Ints, per_metre: Floats, size: int, material: int, u_m: float, v_m: float, footprint_m: float
 ) -> Rgb:
     """A texture's colour at a place on a surface, blurred to the pixel's footprint there."""
     scale = per_metre[material]
-    detail = math.log2(max(footprint_m * scale * size, 1.0))
     last = starts.shape[0] - 1
-    level = min(int(detail), last)
-    red, green, blue = _level_texel(texels, starts, size, material, u_m * scale, v_m * scale, level)
-    part = detail - level
-    if part > 0.02 and level < last:
-        other = _level_texel(texels, starts, size, material, u_m * scale, v_m * scale, level + 1)
+    level, wide = _halvings(footprint_m * scale * size, last)
+    u, v = u_m * scale, v_m * scale
+    red, green, blue = _level_texel(texels, starts, size, material, u, v, level)
+    # Two levels are mixed in the middle of the way from one to the next: elsewhere one is near enough.
+    part = 2.5 * wide - 3.25
+    if part > 0.0 and level < last:
+        part = min(part, 1.0)
+        other = _level_texel(texels, starts, size, material, u, v, level + 1)
         red += part * (other[0] - red)
         green += part * (other[1] - green)
         blue += part * (other[2] - blue)
     return red, green, blue
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _sky(tones: Floats, clouds: Texels, x: float, y: float, z: float) -> Rgb:
     """The sky in a direction of length 1."""
     up = max(z, 0.0)
@@ -177,10 +189,12 @@ def _sky(tones: Floats, clouds: Texels, x: float, y: float, z: float) -> Rgb:
     return red, green, blue
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _hazed(tones: Floats, haze_m: float, colour: Rgb, distance: float, x: float, y: float, z: float) -> Rgb:
     """What is left of a colour after the air before it; the direction is of length 1."""
-    share = 1.0 - math.exp(-distance / haze_m)
+    thick = distance / haze_m
+    # The first terms of an exponential: the same to the last bit on every processor.
+    share = 1.0 - 1.0 / (1.0 + thick * (1.0 + thick * (0.5 + thick * (1.0 / 6.0 + thick * (1.0 / 24.0)))))
     near = max(0.0, x * tones[SUN, 0] + y * tones[SUN, 1] + z * tones[SUN, 2])
     glow = 0.5 * near * near * near * near
     return (
@@ -190,7 +204,7 @@ def _hazed(tones: Floats, haze_m: float, colour: Rgb, distance: float, x: float,
     )
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _mirrored(tones: Floats, clouds: Texels, colour: Rgb, share: float, x: float, y: float, z: float) -> Rgb:
     """A colour with a share of what is seen of the surroundings in a mirrored direction."""
     seen = _sky(tones, clouds, x, y, abs(z))
@@ -204,7 +218,7 @@ def _mirrored(tones: Floats, clouds: Texels, colour: Rgb, share: float, x: float
     )
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _kind_at(codes: Codes, corner: Floats, x: float, y: float) -> int:
     """The kind of ground at a point: the one with most weight among the four nearest cells."""
     rows, columns = codes.shape
@@ -232,10 +246,10 @@ def _kind_at(codes: Codes, corner: Floats, x: float, y: float) -> int:
     return d if sum_d > most else kind
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _average_at(corner: Floats, averages: Texels, layout: Ints, x: float, y: float, cells: float) -> Rgb:
     """The mean colour of the ground around a point, over about so many cells across."""
-    level = min(max(int(math.log2(cells) - 1.5), 0), layout.shape[0] - 1)
+    level = _halvings(cells * 0.35, layout.shape[0] - 1)[0]
     start, rows, columns = layout[level, 0], layout[level, 1], layout[level, 2]
     edge = corner[2] * (4 << level)
     u = min(max((x - corner[0]) / edge - 0.5, 0.0), columns - 1.0)
@@ -254,7 +268,7 @@ def _average_at(corner: Floats, averages: Texels, layout: Ints, x: float, y: flo
     )
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _ground(
     codes: Codes, corner: Floats, materials: Codes, colours: Texels, averages: Texels, layout: Ints, texels: Texels,
     starts: Ints, per_metre: Floats, size: int, tones: Floats, clouds: Texels, haze_m: float, shadow: float, soft: bool,
@@ -298,7 +312,7 @@ def _ground(
     return _hazed(tones, haze_m, colour, distance, dx, dy, dz)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _surface(
     faces: Texels, stands: Floats, texels: Texels, starts: Ints, per_metre: Floats, size: int, tones: Floats,
     clouds: Texels, haze_m: float, shadow: float, soft: bool, lamps: float, frame: Floats, fine_pages: Pages,
@@ -307,10 +321,10 @@ def _surface(
 ) -> Rgb:
     """The light from a point of a thing's triangle; (dx, dy, dz) is where the eye looks, of length 1."""
     sine, cosine = stands[i, 3], stands[i, 4]
-    sx, sy, sz = stands[i, 5], stands[i, 6], stands[i, 7]
+    sx, sy, sz = stands[i, 5], stands[i, 6], stands[i, 7]  # reciprocals
     ox, oy, oz = px - stands[i, 0], py - stands[i, 1], pz - stands[i, 2]
     # Where the point lies in the triangle: the weights of its corners.
-    qx, qy, qz = (ox * cosine - oy * sine) / sx - faces[t, 0], (ox * sine + oy * cosine) / sy - faces[t, 1], oz / sz
+    qx, qy, qz = (ox * cosine - oy * sine) * sx - faces[t, 0], (ox * sine + oy * cosine) * sy - faces[t, 1], oz * sz
     qz -= faces[t, 2]
     ex, ey, ez = faces[t, 3], faces[t, 4], faces[t, 5]
     fx, fy, fz = faces[t, 6], faces[t, 7], faces[t, 8]
@@ -320,9 +334,9 @@ def _surface(
     w1 = min(max((ff * qe - ef * qf) * inverse, 0.0), 1.0)
     w2 = min(max((ee * qf - ef * qe) * inverse, 0.0), 1.0)
     w0 = 1.0 - w1 - w2
-    mx = (w0 * faces[t, 9] + w1 * faces[t, 12] + w2 * faces[t, 15]) / sx
-    my = (w0 * faces[t, 10] + w1 * faces[t, 13] + w2 * faces[t, 16]) / sy
-    nz = (w0 * faces[t, 11] + w1 * faces[t, 14] + w2 * faces[t, 17]) / sz
+    mx = (w0 * faces[t, 9] + w1 * faces[t, 12] + w2 * faces[t, 15]) * sx
+    my = (w0 * faces[t, 10] + w1 * faces[t, 13] + w2 * faces[t, 16]) * sy
+    nz = (w0 * faces[t, 11] + w1 * faces[t, 14] + w2 * faces[t, 17]) * sz
     nx, ny = mx * cosine + my * sine, my * cosine - mx * sine
     length = 1.0 / math.sqrt(nx * nx + ny * ny + nz * nz + 1e-20)
     nx, ny, nz = nx * length, ny * length, nz * length
@@ -364,33 +378,32 @@ def _surface(
     return _hazed(tones, haze_m, colour, distance, dx, dy, dz)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def shade(
     surfaces: Surfaces, looks: GroundLooks, textures: Textures, light: Light, maps: ShadowMaps, view: Projection,
-    canvas: Canvas, curve: NDArray[np.uint8], wanted: NDArray[np.uint8], picture: NDArray[np.uint8],
+    canvas: Canvas, curve: NDArray[np.uint8], wanted: NDArray[np.uint8], owners: NDArray[np.int32],
+    triangles: NDArray[np.int32], picture: NDArray[np.uint8],
 ) -> bool:
     """Set the picture, shape (height, width, 3); return whether all shadow tiles that it needs were there.
 
     The samples of a pixel that show the same triangle are shaded together, in their middle.
     """
-    # Arrays by themselves: numba counts references to what it takes out of a tuple, each time.
     faces, stands = surfaces.faces, surfaces.stands
     codes, corner, materials, colours = looks.codes, looks.corner, looks.materials, looks.colours
     averages, layout = looks.averages, looks.layout
     texels, starts, per_metre, size = textures.texels, textures.starts, textures.per_metre, textures.side
     tones, clouds = light.tones, light.clouds
+    haze_m, shadow, soft, wetness, lamps = light.haze_m, light.shadow, light.soft, light.wetness, light.lamps
     frame, fine_pages, fine = maps.frame, maps.fine_pages, maps.fine
     coarse_pages, coarse = maps.coarse_pages, maps.coarse
     seen_nearness, seen_owners, seen_triangles = canvas.nearness, canvas.owners, canvas.triangles
     eye, axes = view.eye, view.axes
-    samples = view.samples
+    samples, focal, centre_x, centre_y = view.samples, view.focal, view.centre_x, view.centre_y
     count = samples * samples
-    pixel = samples / view.focal
+    pixel = samples / focal
     ahead_x, ahead_y, ahead_z = axes[2, 0], axes[2, 1], axes[2, 2]
-    owners = np.empty(4, np.int64)
-    triangles = np.empty(4, np.int64)
     scale = (curve.shape[0] - 1) / (4.0 * count)
-    per_focal = 1.0 / view.focal
+    per_focal = 1.0 / focal
     last = curve.shape[0] - 1
     for y in range(picture.shape[0]):
         for x in range(picture.shape[1]):
@@ -412,8 +425,9 @@ def shade(
                         middle_y += row
                         nearness += seen_nearness[row, column]
                         same += 1.0
-                across = (middle_x / same + 0.5 - view.centre_x) * per_focal
-                down = (middle_y / same + 0.5 - view.centre_y) * per_focal
+                per_same = 1.0 / same
+                across = (middle_x * per_same + 0.5 - centre_x) * per_focal
+                down = (middle_y * per_same + 0.5 - centre_y) * per_focal
                 dx = ahead_x + across * axes[0, 0] + down * axes[1, 0]
                 dy = ahead_y + across * axes[0, 1] + down * axes[1, 1]
                 dz = ahead_z + across * axes[0, 2] + down * axes[1, 2]
@@ -430,13 +444,13 @@ def shade(
                     if owners[k] == GROUND:
                         colour = _ground(
                             codes, corner, materials, colours, averages, layout, texels, starts, per_metre, size, tones,
-                            clouds, light.haze_m, light.shadow, light.soft, light.wetness, frame, fine_pages, fine,
+                            clouds, haze_m, shadow, soft, wetness, frame, fine_pages, fine,
                             coarse_pages, coarse, wanted, px, py, distance, dx, dy, dz, pixel,
                         )
                     else:
                         colour = _surface(
-                            faces, stands, texels, starts, per_metre, size, tones, clouds, light.haze_m, light.shadow,
-                            light.soft, light.lamps, frame, fine_pages, fine, coarse_pages, coarse, wanted, owners[k],
+                            faces, stands, texels, starts, per_metre, size, tones, clouds, haze_m, shadow,
+                            soft, lamps, frame, fine_pages, fine, coarse_pages, coarse, wanted, owners[k],
                             triangles[k], px, py, pz, distance, dx, dy, dz, pixel,
                         )
                 red += same * colour[0]

@@ -10,9 +10,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from reasoned_explorer.rendering.compiling import inlined, kernel
 from reasoned_explorer.rendering.library import Library
 from reasoned_explorer.rendering.scene import Instances
 
@@ -49,7 +49,7 @@ class ShadowMaps(NamedTuple):
     coarse: NDArray[np.uint16]
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _filtered(tiles: NDArray[np.uint16], page: int, u: float, v: float, height: int) -> float:
     """The share of 3 × 3 texels around a point (in texels) that nothing higher than ``height`` darkens, smoothly."""
     left, low = math.floor(u), math.floor(v)
@@ -70,7 +70,7 @@ def _filtered(tiles: NDArray[np.uint16], page: int, u: float, v: float, height: 
     return total * (1.0 / 9.0)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def sunlight_at(
     frame: NDArray[np.float64], fine_pages: NDArray[np.int32], fine_tiles: NDArray[np.uint16],
     coarse_pages: NDArray[np.int32], coarse_tiles: NDArray[np.uint16], soft: bool, wanted: NDArray[np.uint8], x: float,
@@ -127,7 +127,7 @@ def sunlight_at(
     return share
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _cast_triangle(
     corners: NDArray[np.float64], a: int, b: int, c: int, tile: NDArray[np.uint16]
 ) -> None:
@@ -171,7 +171,7 @@ def _cast_triangle(
                 tile[row, column] = height
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def cast(
     library: Library, instances: Instances, footprints: NDArray[np.float64], shear: NDArray[np.float64], west: float,
     south: float, texel: float, coarser: int, corners: NDArray[np.float64], tile: NDArray[np.uint16],

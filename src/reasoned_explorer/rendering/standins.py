@@ -1,13 +1,9 @@
 """Boxes that stand for what has no model yet."""
 
-from itertools import pairwise
-
 import numpy as np
-import shapely
 
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.mesh import Mesh, Model
-from reasoned_explorer.world.world import Building
 
 
 def flat_mesh(corners: object, colour: tuple[float, float, float], material: Material, uvs: object = None) -> Mesh:
@@ -36,25 +32,3 @@ def box_model(
     quads = [(0, 1, 5, 4), (1, 3, 7, 5), (3, 2, 6, 7), (2, 0, 4, 6), (4, 5, 7, 6), (2, 3, 1, 0)]
     corners = [c[[q[i], q[j], q[k]]] for q in quads for i, j, k in ((0, 1, 2), (0, 2, 3))]
     return Model((flat_mesh(corners, colour, material),), size_m)
-
-
-def block_model(building: Building) -> Model:
-    """Return a building's outline drawn up to its height, in ENU metres."""
-    low, high = building.min_height_m, building.height_m
-    corners, uvs = [], []
-    polygon = shapely.orient_polygons(shapely.Polygon(building.outer, building.holes))
-    for ring in (polygon.exterior, *polygon.interiors):
-        along = 0.0
-        for a, b in pairwise(np.asarray(ring.coords)):
-            length = float(np.hypot(*(b - a)))
-            p = [(*a, low), (*b, low), (*b, high), (*a, high)]
-            t = [(along, low), (along + length, low), (along + length, high), (along, high)]
-            corners += [[p[0], p[1], p[2]], [p[0], p[2], p[3]]]
-            uvs += [[t[0], t[1], t[2]], [t[0], t[2], t[3]]]
-            along += length
-    for triangle in shapely.constrained_delaunay_triangles(polygon).geoms:
-        a, b, c = np.asarray(shapely.orient_polygons(triangle).exterior.coords)[:3]
-        corners.append([(*a, high), (*b, high), (*c, high)])
-        uvs.append([tuple(a), tuple(b), tuple(c)])
-    mesh = flat_mesh(corners, (0.75, 0.7, 0.62), Material.PLASTER, uvs)
-    return Model((mesh,), mesh.size_m, "none")

@@ -1,6 +1,5 @@
 """People: women, men and children, who stand or walk."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -90,8 +89,8 @@ def _person(builder: MeshBuilder, variant: int) -> None:
 def _far(builder: MeshBuilder, who: _Person) -> None:
     skin, hair = _SKINS[who.looks], _HAIRS[who.looks]
     deep = 0.16 + 0.5 * who.stride_m
-    builder.lathe(who.legs, [(1.0, 0.0), (0.95, 0.9)], sides=13, stretch=(0.2, deep))
-    builder.lathe(PAINT, [(0.92, 0.85), (1.0, 1.46)], sides=13, stretch=(0.25, 0.14))
+    builder.lathe(who.legs, [(1.0, 0.0), (0.95, 0.9)], sides=13, stretch=(0.2, deep), capped=False)
+    builder.lathe(PAINT, [(0.92, 0.85), (1.0, 1.46)], sides=13, stretch=(0.25, 0.14), capped=False)
     mixed = plain(*(0.6 * a + 0.4 * b for a, b in zip(skin.colour, hair.colour, strict=True)))
     builder.cylinder(mixed, (0, 0.01, 1.44), (0, 0.01, 1.75), 0.12, 0.11, sides=13, capped=False)
 
@@ -110,7 +109,9 @@ def _legs(builder: MeshBuilder, who: _Person, stride: float) -> None:
         builder.tube(lower, [ankle, knee, top], [0.052, 0.066, 0.092], sides=sides)
         if builder.detail <= 1:
             toe = (0, 0.13, -0.02) if not back else (0, 0.1, -0.08)
-            builder.beam(shoe, ankle + np.array([0, -0.06, -0.045]), ankle + np.array(toe) - np.array([0, 0, 0.025]), 0.09, 0.09)
+            builder.beam(
+                shoe, ankle + np.array([0, -0.06, -0.045]), ankle + np.array(toe) - np.array([0, 0, 0.025]), 0.09, 0.09
+            )
         else:
             builder.box(shoe, (x - 0.05, y - 0.08, 0), (x + 0.05, y + 0.14, 0.1))
     if who.skirt:
@@ -125,7 +126,15 @@ def _trunk(builder: MeshBuilder, who: _Person) -> None:
         "woman": (0.138, 0.172, 0.178, 0.176),
         "child": (0.15, 0.158, 0.165, 0.155),
     }[who.build]
-    profile = [(hips, 0.86), (hips * 0.99, 0.95), (waist, 1.08), (chest, 1.27), (shoulder, 1.38), (0.12, 1.47), (0.055, 1.5)]
+    profile = [
+        (hips, 0.86),
+        (hips * 0.99, 0.95),
+        (waist, 1.08),
+        (chest, 1.27),
+        (shoulder, 1.38),
+        (0.12, 1.47),
+        (0.055, 1.5),
+    ]
     if builder.detail == 2:
         profile = profile[::2]
     builder.lathe(PAINT, profile, sides=14, stretch=(1.0, 0.62))
@@ -160,8 +169,10 @@ def _head(builder: MeshBuilder, who: _Person) -> None:
     builder.sphere(skin, (0, 0.025, 1.62), (0.075 * big, 0.092 * big, 0.112), sides=12, rings=8)
     builder.sphere(hair, (0, -0.005, 1.66), (0.086 * big, 0.1 * big, 0.09), sides=12, rings=6)
     if who.long_hair:
-        fall = [[(x * w, y, z) for x, y in ((-1, 0.01), (-1, -0.07), (0, -0.11), (1, -0.07), (1, 0.01))] for w, z in
-                ((0.085, 1.66), (0.092, 1.55), (0.08, 1.42))]
+        fall = [
+            [(x * w, y, z) for x, y in ((-1, 0.01), (-1, -0.07), (0, -0.11), (1, -0.07), (1, 0.01))]
+            for w, z in ((0.085, 1.66), (0.092, 1.55), (0.08, 1.42))
+        ]
         builder.loft(hair, fall)
     if builder.detail == 0:
         builder.box(skin.shaded(0.93), (-0.012, 0.105, 1.6), (0.012, 0.135, 1.635))
@@ -170,4 +181,4 @@ def _head(builder: MeshBuilder, who: _Person) -> None:
         builder.box(plain(0.62, 0.30, 0.28), (-0.022, 0.098, 1.572), (0.022, 0.113, 1.581))
 
 
-MAKERS = {"person": Maker(_person, variants=len(_PEOPLE), tints=_CLOTHES, scaling="uniform", fits=False)}
+MAKERS = {"person": Maker(_person, variants=len(_PEOPLE), tints=_CLOTHES, scaling="uniform", fits="none")}
