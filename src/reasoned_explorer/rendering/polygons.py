@@ -1,5 +1,7 @@
 """Flat polygons in space, cut into triangles."""
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,20 +18,33 @@ def triangulated(points: FloatArray) -> IntArray:
     Returns:
         Places of corners, shape (n - 2, 3).
     """
-    count = len(points)
-    if count == 3:
-        return np.array([[0, 1, 2]])
-    turned = np.roll(points, -1, axis=0)
-    normal = np.cross(points - points[0], turned - points[0]).sum(axis=0)
-    turns = np.cross(points - np.roll(points, 1, axis=0), turned - points) @ normal
-    if (turns >= -1e-12).all():
-        return _strip(count)
+    normal, convex = _turning(points.tolist())
+    if convex:
+        return _strip(len(points))
     first = points[1] - points[0]
     first = first / np.linalg.norm(first)
-    second = np.cross(normal, first)
+    second = np.array(_cross_of(normal, first.tolist()))
     return _clipped(np.column_stack([points @ first, points @ second / np.linalg.norm(second)]))
 
 
+def _turning(points: list[list[float]]) -> tuple[list[float], bool]:
+    """Return a polygon's normal (of any length) and whether it turns one way at all its corners."""
+    # In plain Python: polygons have few corners, and there are thousands of them.
+    edges = [[b - a for a, b in zip(points[k - 1], points[k], strict=True)] for k in range(len(points))]
+    turns = [_cross_of(edges[k - 1], edges[k]) for k in range(len(edges))]
+    start = points[0]
+    arms = [[b - a for a, b in zip(start, point, strict=True)] for point in points]
+    swept = [_cross_of(arms[k - 1], arms[k]) for k in range(2, len(arms))]
+    normal = [sum(part[axis] for part in swept) for axis in range(3)]
+    return normal, all(sum(a * b for a, b in zip(turn, normal, strict=True)) >= -1e-12 for turn in turns)
+
+
+def _cross_of(one: list[float], other: list[float]) -> list[float]:
+    (a, b, c), (d, e, f) = one, other
+    return [b * f - c * e, c * d - a * f, a * e - b * d]
+
+
+@lru_cache(maxsize=256)
 def _strip(count: int) -> IntArray:
     """Return a convex polygon's triangles as a zigzag, which has fewer slivers than a fan."""
     low, high, found = 0, count - 1, []
