@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import shapely
 from numpy.typing import NDArray
 
 from reasoned_explorer.rendering.crossings import crossings_of
@@ -80,6 +81,17 @@ def test_stripes_fill_the_crossing_along_the_road() -> None:
     assert stripes[..., 0].max() == pytest.approx(61.5)
     assert 46.0 <= stripes[..., 1].min() <= 47.0
     np.testing.assert_allclose(np.diff(np.sort(stripes[..., 1].mean(axis=1))), 1.0)
+
+
+def test_crossings_of_roads_that_meet_sharply_do_not_lie_on_each_other() -> None:
+    sharp = road((50, 50), (100, 60))
+    walks = [walk(62.0), Way("footway", Ground.PAVEMENT, np.array([(66.0, 46.0), (63.0, 60.0)]), 3.0)]
+    found = crossings_of(field(ways=[road((0, 50), (100, 50)), sharp, *walks]))
+    assert found.marked.sum() > 1
+    stripes = zebras(found).corners
+    shapes = shapely.polygons(stripes[..., :2])
+    at, other = shapely.STRtree(shapes).query(shapes, predicate="overlaps")
+    assert shapely.area(shapely.intersection(shapes[at], shapes[other])).sum() < 0.5
 
 
 def test_cars_stop_before_the_crossing_on_their_right_lane() -> None:

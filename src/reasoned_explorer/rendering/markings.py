@@ -26,7 +26,7 @@ Place = tuple[float, float, float]
 CHUNK_M = 32.0
 _PAINT_Z_M, _SLEEPER_Z_M, _RAIL_Z_M = 0.012, 0.02, 0.06
 _WHITE = np.array((0.90, 0.90, 0.88))
-_TREAD = np.array((0.42, 0.41, 0.40))
+_TREAD = np.array((0.52, 0.51, 0.49))
 _STEEL, _SLEEPER = np.array((0.62, 0.60, 0.58)), np.array((0.42, 0.37, 0.33))
 _UNMARKED = frozenset({"service", "track", "living_street", "driveway", "pedestrian", "alley"})
 _MAIN = frozenset({"motorway", "trunk", "primary", "secondary", "tertiary"})
@@ -124,7 +124,17 @@ def zebras(crossings: Crossings) -> Patch:
     off = (place + 0.5 - np.repeat(count, count) / 2.0)[:, None]
     middle = crossings.middles[row] + off * across
     half = (crossings.walk_m[row] / 2.0)[:, None] * along
-    return strips(middle - half, middle + half, width_m=0.5)
+    # Where roads meet at a sharp angle, crossings would lie on each other.
+    free = ~_covered(crossings, middle - half, middle + half, row)
+    return strips((middle - half)[free], (middle + half)[free], width_m=0.5)
+
+
+def _covered(crossings: Crossings, begins: Floats, ends: Floats, owners: Ints) -> NDArray[np.bool_]:
+    """Return which strips touch the stripes of a crossing that comes before their own."""
+    found = np.zeros(len(begins), np.bool_)
+    for share in (0.0, 0.25, 0.5, 0.75, 1.0):
+        found |= crossings.cover(begins + share * (ends - begins), owners)
+    return found
 
 
 def stop_lines(crossings: Crossings) -> Patch:
@@ -137,7 +147,9 @@ def stop_lines(crossings: Crossings) -> Patch:
         before = crossings.middles[wide] - ahead * (crossings.walk_m[wide] / 2.0 + 1.2)[:, None]
         begins.append(before + 0.2 * right)
         ends.append(before + right * (crossings.road_m[wide] / 2.0 - 0.4)[:, None])
-    return strips(np.concatenate(begins), np.concatenate(ends), width_m=0.35)
+    begin, end = np.concatenate(begins), np.concatenate(ends)
+    free = ~_covered(crossings, begin, end, np.full(len(begin), len(crossings.middles)))
+    return strips(begin[free], end[free], width_m=0.35)
 
 
 def parking_bays(world: World, ground: GroundRaster) -> Patch:
