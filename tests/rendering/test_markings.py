@@ -11,6 +11,7 @@ from reasoned_explorer.rendering.markings import (
     CHUNK_M,
     chunked,
     lane_lines,
+    lying_on,
     markings_of,
     parking_bays,
     pitches,
@@ -130,6 +131,16 @@ def test_stairs_have_steps_across() -> None:
     assert len(edges) == 20
     np.testing.assert_allclose(np.ptp(edges[..., 0], axis=1), 3.0)
     np.testing.assert_allclose(np.diff(np.sort(edges[..., 1].mean(axis=1))), 0.45)
+
+
+def test_what_another_ground_covers_is_not_painted() -> None:
+    square = Way("pedestrian", Ground.PLAZA, np.array([(30.0, 50.0), (60.0, 50.0)]), 20.0)
+    world = field(ways=[road((0, 50), (100, 50)), square])
+    roads = [way for way in world.ways if way.ground == Ground.ROAD]
+    (dashes, *_) = lane_lines(roads, clearings_of(roads, crossings_of(world)))
+    shown = lying_on(dashes, ground_map_of(world), Ground.ROAD).corners[..., 0].mean(axis=1)
+    assert 0 < len(shown) < len(dashes.corners)
+    assert ((shown < 21.0) | (shown > 69.0)).all()
 
 
 def test_everything_is_low_faces_up_and_comes_in_squares() -> None:

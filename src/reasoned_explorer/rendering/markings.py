@@ -50,14 +50,13 @@ def markings_of(world: World, ground: GroundRaster, *, crossings: Crossings | No
     """
     crossed = crossings_of(world) if crossings is None else crossings
     roads = [way for way in world.ways if is_carriageway(way)]
+    on_roads = [*lane_lines(roads, clearings_of(roads, crossed)), zebras(crossed), stop_lines(crossed)]
     patches = [
-        *lane_lines(roads, clearings_of(roads, crossed)),
-        zebras(crossed),
-        stop_lines(crossed),
+        *(lying_on(patch, ground, Ground.ROAD) for patch in on_roads),
         parking_bays(world, ground),
-        pitches(world),
+        lying_on(pitches(world), ground, Ground.PITCH),
         *rails(world.ways),
-        stairs(world.ways),
+        lying_on(stairs(world.ways), ground, Ground.STEPS),
         *kerbs(roads, ground, crossed),
         *shores(world, ground),
     ]
@@ -81,6 +80,12 @@ def strips(
     return Patch.of(
         corners, plan_uvs(corners), colours=colour, materials=material, owners=np.zeros(len(begins), np.int64)
     )
+
+
+def lying_on(patch: Patch, ground: GroundRaster, kind: Ground) -> Patch:
+    """Return the faces whose middle lies on a kind of ground: what lies above hides the others."""
+    middles = patch.corners[..., :2].mean(axis=1)
+    return patch.where(ground.at_many(middles[:, 0], middles[:, 1]) == kind)
 
 
 def lane_lines(roads: list[Way], clearings: Clearings) -> list[Patch]:
