@@ -23,7 +23,8 @@ def row_of(kind: str, *, height_m: float = 12.0, count: int = 40) -> list[Buildi
 @pytest.mark.parametrize(
     ("kind", "family"),
     [("detached", Family.HOUSE), ("apartments", Family.FLATS), ("university", Family.OFFICE), ("retail", Family.SHOP),
-     ("warehouse", Family.HALL), ("cathedral", Family.CHURCH), ("garage", Family.HUT), ("greenhouse", Family.GLASSHOUSE)],
+     ("warehouse", Family.HALL), ("cathedral", Family.CHURCH), ("garage", Family.HUT),
+     ("greenhouse", Family.GLASSHOUSE)],
 )  # fmt: skip
 def test_kinds_decide_families(kind: str, family: Family) -> None:
     assert set(styles_for(*row_of(kind)).family.tolist()) == {family}
