@@ -171,7 +171,7 @@ def test_nothing_floats(name, variant, level):
 
 def digest():
     total = hashlib.sha256()
-    for name, variant in EVERY:
+    for name, variant in EVERY[::2]:
         # Past the cache: what is made anew must be the same.
         for mesh in _MAKERS[name].model(variant, natural_size_m(name)).levels:
             for field in ("vertices", "triangles", "normals", "uvs", "colours", "materials"):

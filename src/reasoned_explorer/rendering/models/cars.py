@@ -113,7 +113,7 @@ def _belt_at(body: _Body, y: float) -> float:
 
 def _lower(builder: MeshBuilder, body: _Body) -> None:
     """The body up to the windows: rounded sections from tail to nose."""
-    stations = body.belt if builder.detail <= 1 else [body.belt[k] for k in (0, 2, 5, 7)]
+    stations = body.belt if builder.detail <= 1 else [body.belt[k] for k in (1, 2, 5, 6)]
     rings = []
     for y, z in stations:
         end = abs(y) / 2.2
@@ -232,9 +232,11 @@ def _ends(builder: MeshBuilder, body: _Body) -> None:
     nose, tail = body.belt[-2][1], body.belt[1][1]
     for side in (-1, 1):
         if builder.detail == 2:
-            lamp = facing_front(2.21).points(rectangle(side * 0.6, nose - 0.1, 0.32, 0.13))
+            lamp = facing_front(body.belt[-2][0] + 0.012).points(rectangle(side * 0.6, nose - 0.1, 0.32, 0.13))
             builder.decal(_LAMP, lamp)
-            builder.decal(SIGN_RED, facing_back(-2.21).points(rectangle(side * 0.62, tail - 0.17, 0.26, 0.22)))
+            builder.decal(
+                SIGN_RED, facing_back(body.belt[1][0] - 0.012).points(rectangle(side * 0.62, tail - 0.17, 0.26, 0.22))
+            )
             continue
         builder.box(_LAMP, _low(side * 0.62, 0.16, 2.0, nose - 0.16), _high(side * 0.62, 0.16, 2.17, nose - 0.03))
         builder.box(

@@ -184,7 +184,7 @@ def _bicycle_rental(builder: MeshBuilder, variant: int) -> None:
     builder.box(DARK_STEEL, (-4.0, -0.55, 0), (-3.2, 1.0, 0.05))
     bicycle = MeshBuilder(detail=min(2, builder.detail + 1))
     if builder.detail < 2:
-        add_bicycle(bicycle, livery, low_step=True, basket=builder.detail == 0)
+        add_bicycle(bicycle, livery, low_step=True, basket=True)
     else:
         _far_bicycle(bicycle, livery)
     for place, x in enumerate(docks.tolist()):
