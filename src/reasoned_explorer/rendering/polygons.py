@@ -24,19 +24,32 @@ def triangulated(points: FloatArray) -> IntArray:
     first = points[1] - points[0]
     first = first / np.linalg.norm(first)
     second = np.array(_cross_of(normal, first.tolist()))
-    return _clipped(np.column_stack([points @ first, points @ second / np.linalg.norm(second)]))
+    arms = points - points[0]
+    flat = np.column_stack([arms @ first, arms @ second / np.linalg.norm(second)])
+    # The same figure comes again and again, in other places.
+    return _remembered(np.round(flat, 7).tobytes())
+
+
+@lru_cache(maxsize=512)
+def _remembered(flat: bytes) -> IntArray:
+    return _clipped(np.frombuffer(flat, np.float64).reshape(-1, 2))
 
 
 def _turning(points: list[list[float]]) -> tuple[list[float], bool]:
     """Return a polygon's normal (of any length) and whether it turns one way at all its corners."""
     # In plain Python: polygons have few corners, and there are thousands of them.
-    edges = [[b - a for a, b in zip(points[k - 1], points[k], strict=True)] for k in range(len(points))]
-    turns = [_cross_of(edges[k - 1], edges[k]) for k in range(len(edges))]
-    start = points[0]
-    arms = [[b - a for a, b in zip(start, point, strict=True)] for point in points]
-    swept = [_cross_of(arms[k - 1], arms[k]) for k in range(2, len(arms))]
-    normal = [sum(part[axis] for part in swept) for axis in range(3)]
-    return normal, all(sum(a * b for a, b in zip(turn, normal, strict=True)) >= -1e-12 for turn in turns)
+    x0, y0, z0 = points[0]
+    arms = [(x - x0, y - y0, z - z0) for x, y, z in points]
+    nx = ny = nz = 0.0
+    turns = []
+    ax, ay, az = arms[-2]
+    bx, by, bz = arms[-1]
+    for cx, cy, cz in arms:
+        nx, ny, nz = nx + by * cz - bz * cy, ny + bz * cx - bx * cz, nz + bx * cy - by * cx
+        ux, uy, uz, vx, vy, vz = bx - ax, by - ay, bz - az, cx - bx, cy - by, cz - bz
+        turns.append((uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx))
+        ax, ay, az, bx, by, bz = bx, by, bz, cx, cy, cz
+    return [nx, ny, nz], all(tx * nx + ty * ny + tz * nz >= -1e-12 for tx, ty, tz in turns)
 
 
 def _cross_of(one: list[float], other: list[float]) -> list[float]:
