@@ -1,5 +1,6 @@
 """Pictures by ray casting (Embree), of the very triangles that the renderer drew."""
 
+import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,7 +28,12 @@ class Comparison:
 
 
 def compared(
-    renderer: Renderer, pose: Pose, camera: Camera, *, pitch_rad: float = 0.0, everything: bool = False,
+    renderer: Renderer,
+    pose: Pose,
+    camera: Camera,
+    *,
+    pitch_rad: float = 0.0,
+    everything: bool = False,
     eye_error_m: float = 0.0,
 ) -> Comparison:
     view = projection_of(pose, camera, pitch_rad=pitch_rad)
@@ -45,6 +51,30 @@ def compared(
 
 def cast(scene: Scene, levels: np.ndarray, view: Projection) -> tuple[np.ndarray, np.ndarray]:
     """Depth along the axis and ids of instances drawn at levels (those at -1 are left out)."""
+    soup, owners = soup_of(scene, levels, view)
+    rays = rays_of(view)
+    found = _embree(soup).run(*_single(rays), output=1)["primID"]
+    ids = np.where(found >= 0, owners[found], SKY_ID)
+    # Embree says which triangle; how far it is in double precision, as its own is not enough at grazing angles.
+    a, b, c = np.moveaxis(soup[found], 1, 0)
+    normals = np.cross(b - a, c - a)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        depth = np.where(found >= 0, (normals * a).sum(axis=1) / (normals * rays).sum(axis=1), np.inf)
+    return depth.reshape(view.height, view.width), ids.reshape(view.height, view.width)
+
+
+def cast_seconds(scene: Scene, levels: np.ndarray, view: Projection) -> float:
+    """This thread's time to cast a picture's rays, once Embree has its scene."""
+    soup, _ = soup_of(scene, levels, view)
+    embree, rays = _embree(soup), _single(rays_of(view))
+    embree.run(*rays, output=1)
+    begin = time.thread_time()
+    embree.run(*rays, output=1)
+    return time.thread_time() - begin
+
+
+def soup_of(scene: Scene, levels: np.ndarray, view: Projection) -> tuple[np.ndarray, np.ndarray]:
+    """Triangles about the eye that face it, shape (n, 3, 3), and their ids."""
     triangles, owners = [ground(view)], [np.full(2, GROUND_ID)]
     for i in np.flatnonzero(levels >= 0):
         own = corners_of(scene, i, levels[i]) - view.eye
@@ -52,23 +82,26 @@ def cast(scene: Scene, levels: np.ndarray, view: Projection) -> tuple[np.ndarray
         facing = (np.cross(own[:, 1] - own[:, 0], own[:, 2] - own[:, 0]) * own[:, 0]).sum(axis=1) < 0.0
         triangles.append(own[facing])
         owners.append(np.full(int(facing.sum()), scene.instances.ids[i]))
-    soup = np.concatenate(triangles)
+    return np.concatenate(triangles), np.concatenate(owners)
+
+
+def rays_of(view: Projection) -> np.ndarray:
+    """A ray through the middle of every sample, one metre along the axis, shape (n, 3)."""
     x = (np.arange(view.width) + 0.5 - view.centre_x) / view.focal
     y = (np.arange(view.height) + 0.5 - view.centre_y) / view.focal
     across, down = np.meshgrid(x, y)
-    rays = view.axes[2] + across[..., None] * view.axes[0] + down[..., None] * view.axes[1]
-    exact = rays.reshape(-1, 3)
-    rays = exact.astype(np.float32)
-    embree = EmbreeScene()
-    TriangleMesh(embree, soup.astype(np.float32))
-    found = embree.run(rays * np.float32(NEAR_M), rays, output=1)["primID"]
-    ids = np.where(found >= 0, np.concatenate(owners)[found], SKY_ID)
-    # Embree says which triangle; how far it is in double precision, as its own is not enough at grazing angles.
-    a, b, c = np.moveaxis(soup[found], 1, 0)
-    normals = np.cross(b - a, c - a)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        depth = np.where(found >= 0, (normals * a).sum(axis=1) / (normals * exact).sum(axis=1), np.inf)
-    return depth.reshape(view.height, view.width), ids.reshape(view.height, view.width)
+    return (view.axes[2] + across[..., None] * view.axes[0] + down[..., None] * view.axes[1]).reshape(-1, 3)
+
+
+def _single(rays: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Origins on the near plane and directions, in single precision."""
+    return (rays * NEAR_M).astype(np.float32), rays.astype(np.float32)
+
+
+def _embree(soup: np.ndarray) -> EmbreeScene:
+    scene = EmbreeScene()
+    TriangleMesh(scene, soup.astype(np.float32))
+    return scene
 
 
 def shown_levels(scene: Scene, drawn: np.ndarray, view: Projection) -> np.ndarray:
@@ -102,7 +135,9 @@ def ground(view: Projection) -> np.ndarray:
         forward, length = np.array([0.0, 1.0, 0.0]), 1.0
     forward /= length
     side = np.array([forward[1], -forward[0], 0.0])
-    reach = (GROUND_REACH_M + view.eye[2] * view.axes[2, 2]) / view.axes[2, :2].dot(forward[:2]) if length > 0.01 else 1e3
+    reach = (
+        (GROUND_REACH_M + view.eye[2] * view.axes[2, 2]) / view.axes[2, :2].dot(forward[:2]) if length > 0.01 else 1e3
+    )
     near, wide = -1000.0, 4.0 * reach
     foot = np.array([0.0, 0.0, -view.eye[2]])
     a, b = foot + near * forward - wide * side, foot + near * forward + wide * side

@@ -14,7 +14,7 @@ from reasoned_explorer.world.world import World
 
 pytest.importorskip("embreex", reason="the oracle of pictures: pip install embreex")
 
-from tests.rendering.oracle import Comparison, compared  # noqa: E402 - needs embreex
+from tests.rendering.oracle import Comparison, compared
 
 CAMERA = Camera(160, 120, math.radians(80.0))
 VIEWS = 25

@@ -13,11 +13,11 @@ from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Camera, SettingsError
 from reasoned_explorer.rendering.conditions import PRESETS, Conditions
 from reasoned_explorer.rendering.material import Material
+from reasoned_explorer.rendering.mesh import Model
 from reasoned_explorer.rendering.renderer import Picture, Renderer
 from reasoned_explorer.rendering.scene import PICTURE_CLASSES, Scene
 from reasoned_explorer.world.opening import open_world
 from tests.rendering.things import FIRST, box, flat_mesh, scene_of
-from reasoned_explorer.rendering.mesh import Model
 
 CAMERA = Camera(64, 48)
 EYE = Pose(0.0, -6.0, 1.5, 0.0)

@@ -41,7 +41,10 @@ def box(size_m=(1.0, 1.0, 1.0), colour=(0.8, 0.8, 0.8), material: Material = Mat
 
 
 def scene_of(
-    things: Sequence[tuple[Model, tuple[float, float, float]]], *, ground: Ground = Ground.PAVEMENT, size_m: float = 60.0
+    things: Sequence[tuple[Model, tuple[float, float, float]]],
+    *,
+    ground: Ground = Ground.PAVEMENT,
+    size_m: float = 60.0,
 ) -> Scene:
     """Models at places about (0, 0) on one kind of ground; thing k has the id `FIRST` + k."""
     cells = int(size_m * 4)

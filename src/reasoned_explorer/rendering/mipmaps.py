@@ -12,7 +12,7 @@ from reasoned_explorer.rendering.textures import TEXTURE_METRES, texture_stack
 _FIRST_BLOCK = 4
 
 
-def textures_of(stack: NDArray[np.float32], metres: NDArray[np.float64]) -> Textures:
+def textures_of(stack: NDArray[np.float32], metres: NDArray[np.float32]) -> Textures:
     """Return textures with all their levels.
 
     Args:
@@ -56,7 +56,12 @@ def ground_looks_of(ground: GroundMap, textures: Textures) -> GroundLooks:
         level = even.reshape(rows // 2, 2, columns // 2, 2, 3).mean(axis=(1, 3), dtype=np.float32)
     averages = np.ascontiguousarray(np.concatenate(levels), np.float32)
     return GroundLooks(
-        ground.codes, np.append(ground.corner, 1.0 / ground.corner[2]), ground.materials, ground.colours, averages, np.array(layout, np.int64)
+        ground.codes,
+        np.append(ground.corner, 1.0 / ground.corner[2]),
+        ground.materials,
+        ground.colours,
+        averages,
+        np.array(layout, np.int64),
     )
 
 
@@ -70,7 +75,8 @@ def _block_means(codes: NDArray[np.uint8], colours: NDArray[np.float32]) -> NDAr
     for j in range(_FIRST_BLOCK):
         for i in range(_FIRST_BLOCK):
             total += colours[padded[j::_FIRST_BLOCK, i::_FIRST_BLOCK]]
-    return total / np.float32(_FIRST_BLOCK**2)
+    total /= np.float32(_FIRST_BLOCK**2)
+    return total
 
 
 def surfaces_of(library: Library, instances: Instances) -> Surfaces:

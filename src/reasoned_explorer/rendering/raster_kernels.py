@@ -146,7 +146,11 @@ def _bound(boxes: Floats, prototype: int, matrix: Floats, width: int, height: in
     least_x, most_x, least_y, most_y = math.inf, -math.inf, math.inf, -math.inf
     least_z, most_z = math.inf, -math.inf
     for corner in range(8):
-        a, b, c = boxes[prototype, corner & 1, 0], boxes[prototype, (corner >> 1) & 1, 1], boxes[prototype, corner >> 2, 2]
+        a, b, c = (
+            boxes[prototype, corner & 1, 0],
+            boxes[prototype, (corner >> 1) & 1, 1],
+            boxes[prototype, corner >> 2, 2],
+        )
         z = matrix[2, 0] * a + matrix[2, 1] * b + matrix[2, 2] * c + matrix[2, 3]
         x = (matrix[0, 0] * a + matrix[0, 1] * b + matrix[0, 2] * c + matrix[0, 3]) / z
         y = (matrix[1, 0] * a + matrix[1, 1] * b + matrix[1, 2] * c + matrix[1, 3]) / z
@@ -242,7 +246,14 @@ def _narrow(slope: float, rest: float, low: float, high: float) -> tuple[float, 
 
 @kernel
 def fill_triangle(
-    corners: Floats, a: int, b: int, c: int, owner: int, triangle: int, nearness: NDArray[np.float32], owners: Ints,
+    corners: Floats,
+    a: int,
+    b: int,
+    c: int,
+    owner: int,
+    triangle: int,
+    nearness: NDArray[np.float32],
+    owners: Ints,
     triangles: Ints,
 ) -> None:
     """Keep a triangle wherever it is nearest and faces the eye.
@@ -263,8 +274,8 @@ def fill_triangle(
     if za > NEAR_M and zb > NEAR_M and zc > NEAR_M:
         xa, xb, xc = corners[a, 3], corners[b, 3], corners[c, 3]
         ya, yb, yc = corners[a, 4], corners[b, 4], corners[c, 4]
-        least_x, most_x = min(xa, min(xb, xc)), max(xa, max(xb, xc))
-        least_y, most_y = min(ya, min(yb, yc)), max(ya, max(yb, yc))
+        least_x, most_x = min(xa, xb, xc), max(xa, xb, xc)
+        least_y, most_y = min(ya, yb, yc), max(ya, yb, yc)
     elif za > NEAR_M or zb > NEAR_M or zc > NEAR_M:
         least_x, most_x, least_y, most_y = _bounds_across_near(corners, a, b, c)
     else:
@@ -388,8 +399,14 @@ def _order(scratch: Scratch, count: int) -> None:
 
 @kernel
 def draw(
-    library: Library, instances: Instances, cells: Cells, view: Projection, density: float, everything: bool,
-    canvas: Canvas, scratch: Scratch,
+    library: Library,
+    instances: Instances,
+    cells: Cells,
+    view: Projection,
+    density: float,
+    everything: bool,
+    canvas: Canvas,
+    scratch: Scratch,
 ) -> None:
     """Find out what is seen in every sample.
 
@@ -448,11 +465,13 @@ def read_out(
             row, column = y * samples, x * samples
             owner, nearness = canvas.owners[row, column], canvas.nearness[row, column]
             if samples == 2:
-                nearness = max(
-                    max(nearness, canvas.nearness[row, column + 1]),
-                    max(canvas.nearness[row + 1, column], canvas.nearness[row + 1, column + 1]),
+                nearness = max(nearness, canvas.nearness[row, column + 1])
+                nearness = max(nearness, canvas.nearness[row + 1, column], canvas.nearness[row + 1, column + 1])
+                others = (
+                    canvas.owners[row, column + 1],
+                    canvas.owners[row + 1, column],
+                    canvas.owners[row + 1, column + 1],
                 )
-                others = canvas.owners[row, column + 1], canvas.owners[row + 1, column], canvas.owners[row + 1, column + 1]
                 if others[0] != owner or others[1] != owner or others[2] != owner:
                     owner, nearness = _most_seen(canvas, ids, row, column)
             found[y, x] = _id_of(owner, ids)
@@ -460,7 +479,7 @@ def read_out(
 
 
 @part
-def _most_seen(canvas: Canvas, ids: NDArray[np.int32], row: int, column: int) -> tuple[int, float]:
+def _most_seen(canvas: Canvas, ids: NDArray[np.int32], row: int, column: int) -> tuple[int, np.float32]:
     """The owner of most of a pixel's four samples, the nearest of equals, and its greatest nearness."""
     best, most, nearest = SKY, 0, np.float32(-1.0)
     for k in range(4):

@@ -24,6 +24,8 @@ Pages = NDArray[np.int32]
 Tiles = NDArray[np.uint16]
 _WATER, _FOLIAGE, _PAINT, _LIT = int(Material.WATER), int(Material.FOLIAGE), int(Material.PAINT), int(Material.GLOW)
 _GLASS, _FACADE_GLASS = int(Material.GLASS), int(Material.FACADE_GLASS)
+_ASPHALT, _PAVING = int(Material.ASPHALT), int(Material.PAVING)
+_COBBLES, _CONCRETE = int(Material.COBBLES), int(Material.CONCRETE)
 #: Beyond this footprint of a pixel the ground is drawn from averages of its colours, in cells of the ground map.
 _FINE_CELLS, _COARSE_CELLS = 2.0, 5.0
 
@@ -137,7 +139,14 @@ def _level_texel(t: Texels, starts: Ints, size: int, material: int, u: float, v:
 
 @inlined
 def _texel(
-    texels: Texels, starts: Ints, per_metre: Floats, size: int, material: int, u_m: float, v_m: float, footprint_m: float
+    texels: Texels,
+    starts: Ints,
+    per_metre: Floats,
+    size: int,
+    material: int,
+    u_m: float,
+    v_m: float,
+    footprint_m: float,
 ) -> Rgb:
     """A texture's colour at a place on a surface, blurred to the pixel's footprint there."""
     scale = per_metre[material]
@@ -219,6 +228,51 @@ def _mirrored(tones: Floats, clouds: Texels, colour: Rgb, share: float, x: float
 
 
 @inlined
+def _mirror_image(
+    nearness: Texels,
+    owners: Pages,
+    picture: Codes,
+    samples: int,
+    eye: Floats,
+    axes: Floats,
+    focal: float,
+    centre_x: float,
+    centre_y: float,
+    x: float,
+    y: float,
+    rx: float,
+    ry: float,
+    rz: float,
+) -> tuple[float, float, float, float]:
+    """What is seen from a point (x, y) of the ground in a direction, as far as it is in the picture and drawn already.
+
+    Returns:
+        Linear light, and 1, or 0 where nothing was found. What is mirrored lies above in the picture, whose upper rows
+        are there already.
+    """
+    step = 0.15
+    reach = 0.0
+    for _ in range(24):
+        reach += step
+        step *= 1.22
+        qx, qy, qz = x + reach * rx - eye[0], y + reach * ry - eye[1], reach * rz - eye[2]
+        depth = qx * axes[2, 0] + qy * axes[2, 1] + qz * axes[2, 2]
+        if depth < 0.1:
+            break
+        scale = focal / depth
+        column = math.floor(centre_x + scale * (qx * axes[0, 0] + qy * axes[0, 1] + qz * axes[0, 2]))
+        row = math.floor(centre_y + scale * (qx * axes[1, 0] + qy * axes[1, 1] + qz * axes[1, 2]))
+        if not (0 <= row < nearness.shape[0] and 0 <= column < nearness.shape[1]):
+            break
+        seen = nearness[row, column]
+        if owners[row, column] >= 0 and seen * depth > 1.0 and (depth - step * 1.5 - 0.2) * seen < 1.0:
+            row, column = (row >> 1, column >> 1) if samples == 2 else (row, column)
+            red, green, blue = picture[row, column, 0], picture[row, column, 1], picture[row, column, 2]
+            return red * red / 65025.0, green * green / 65025.0, blue * blue / 65025.0, 1.0
+    return 0.0, 0.0, 0.0, 0.0
+
+
+@inlined
 def _kind_at(codes: Codes, corner: Floats, x: float, y: float) -> int:
     """The kind of ground at a point: the one with most weight among the four nearest cells."""
     rows, columns = codes.shape
@@ -270,10 +324,36 @@ def _average_at(corner: Floats, averages: Texels, layout: Ints, x: float, y: flo
 
 @inlined
 def _ground(
-    codes: Codes, corner: Floats, materials: Codes, colours: Texels, averages: Texels, layout: Ints, texels: Texels,
-    starts: Ints, per_metre: Floats, size: int, tones: Floats, clouds: Texels, haze_m: float, shadow: float, soft: bool,
-    wetness: float, frame: Floats, fine_pages: Pages, fine: Tiles, coarse_pages: Pages, coarse: Tiles, wanted: Codes,
-    x: float, y: float, distance: float, dx: float, dy: float, dz: float, pixel: float,
+    codes: Codes,
+    corner: Floats,
+    materials: Codes,
+    colours: Texels,
+    averages: Texels,
+    layout: Ints,
+    texels: Texels,
+    starts: Ints,
+    per_metre: Floats,
+    size: int,
+    tones: Floats,
+    clouds: Texels,
+    haze_m: float,
+    shadow: float,
+    soft: bool,
+    wetness: float,
+    frame: Floats,
+    fine_pages: Pages,
+    fine: Tiles,
+    coarse_pages: Pages,
+    coarse: Tiles,
+    wanted: Codes,
+    mirror: tuple[float, float, float, float],
+    x: float,
+    y: float,
+    distance: float,
+    dx: float,
+    dy: float,
+    dz: float,
+    pixel: float,
 ) -> Rgb:
     """The light from a point of the ground; (dx, dy, dz) is where the eye looks, of length 1."""
     lift = max(-dz, 1e-4)
@@ -292,11 +372,13 @@ def _ground(
         red += share * (mean[0] - red)
         green += share * (mean[1] - green)
         blue += share * (mean[2] - blue)
-    lit = sunlight_at(frame, fine_pages, fine, coarse_pages, coarse, soft, wanted, x, y, 0.0, 0.0, 0.0, 1.0, distance, pixel)
+    lit = sunlight_at(
+        frame, fine_pages, fine, coarse_pages, coarse, soft, wanted, x, y, 0.0, 0.0, 0.0, 1.0, distance, pixel
+    )
     lit = tones[SUN, 2] * (1.0 - shadow * (1.0 - lit))
     wet = 0.0
     if wetness > 0.0 and material != _WATER:
-        wet = wetness
+        wet = wetness if material in (_ASPHALT, _PAVING, _COBBLES, _CONCRETE) else 0.25 * wetness
         dark = 1.0 - 0.4 * wet
         red, green, blue = red * dark, green * dark, blue * dark
     colour = (
@@ -307,17 +389,48 @@ def _ground(
     if material == _WATER or wet > 0.0:
         graze = 1.0 - lift
         graze *= graze
-        share = 0.06 + 0.75 * graze * graze if material == _WATER else wet * (0.03 + 0.55 * graze * graze)
-        colour = _mirrored(tones, clouds, colour, share, dx, dy, -dz)
+        share = 0.06 + 0.75 * graze * graze if material == _WATER else wet * (0.04 + 0.6 * graze * graze)
+        if mirror[3] > 0.0:
+            colour = (
+                colour[0] + share * (mirror[0] - colour[0]),
+                colour[1] + share * (mirror[1] - colour[1]),
+                colour[2] + share * (mirror[2] - colour[2]),
+            )
+        else:
+            colour = _mirrored(tones, clouds, colour, share, dx, dy, -dz)
     return _hazed(tones, haze_m, colour, distance, dx, dy, dz)
 
 
 @inlined
 def _surface(
-    faces: Texels, stands: Floats, texels: Texels, starts: Ints, per_metre: Floats, size: int, tones: Floats,
-    clouds: Texels, haze_m: float, shadow: float, soft: bool, lamps: float, frame: Floats, fine_pages: Pages,
-    fine: Tiles, coarse_pages: Pages, coarse: Tiles, wanted: Codes, i: int, t: int, px: float, py: float, pz: float, distance: float, dx: float, dy: float,
-    dz: float, pixel: float,
+    faces: Texels,
+    stands: Floats,
+    texels: Texels,
+    starts: Ints,
+    per_metre: Floats,
+    size: int,
+    tones: Floats,
+    clouds: Texels,
+    haze_m: float,
+    shadow: float,
+    soft: bool,
+    lamps: float,
+    frame: Floats,
+    fine_pages: Pages,
+    fine: Tiles,
+    coarse_pages: Pages,
+    coarse: Tiles,
+    wanted: Codes,
+    i: int,
+    t: int,
+    px: float,
+    py: float,
+    pz: float,
+    distance: float,
+    dx: float,
+    dy: float,
+    dz: float,
+    pixel: float,
 ) -> Rgb:
     """The light from a point of a thing's triangle; (dx, dy, dz) is where the eye looks, of length 1."""
     sine, cosine = stands[i, 3], stands[i, 4]
@@ -349,7 +462,7 @@ def _surface(
     red *= faces[t, 24]
     green *= faces[t, 25]
     blue *= faces[t, 26]
-    if material == _PAINT or material == _FOLIAGE:
+    if material in (_PAINT, _FOLIAGE):
         red *= stands[i, 8]
         green *= stands[i, 9]
         blue *= stands[i, 10]
@@ -357,32 +470,48 @@ def _surface(
         return _hazed(tones, haze_m, (red * lamps, green * lamps, blue * lamps), distance, dx, dy, dz)
     slant = nx * tones[SUN, 0] + ny * tones[SUN, 1] + nz * tones[SUN, 2]
     if material == _FOLIAGE:  # leaves let some light through
-        slant = 0.3 + 0.7 * slant
+        slant = max(0.3 + 0.7 * slant, -0.45 * slant)
     lit = 0.0
     if slant > 0.0:
-        lit = sunlight_at(frame, fine_pages, fine, coarse_pages, coarse, soft, wanted, px, py, pz, nx, ny, nz, distance, pixel)
+        lit = sunlight_at(
+            frame, fine_pages, fine, coarse_pages, coarse, soft, wanted, px, py, pz, nx, ny, nz, distance, pixel
+        )
         lit = slant * (1.0 - shadow * (1.0 - lit))
     up = 0.5 + 0.5 * nz
     near_ground = 0.72 + 0.28 * min(1.0, pz / 1.2)  # less of the sky is seen close to the ground
     colour = (
-        red * (near_ground * (tones[BOUNCE, 0] + up * (tones[SKYLIGHT, 0] - tones[BOUNCE, 0])) + lit * tones[SUNLIGHT, 0]),
-        green * (near_ground * (tones[BOUNCE, 1] + up * (tones[SKYLIGHT, 1] - tones[BOUNCE, 1])) + lit * tones[SUNLIGHT, 1]),
-        blue * (near_ground * (tones[BOUNCE, 2] + up * (tones[SKYLIGHT, 2] - tones[BOUNCE, 2])) + lit * tones[SUNLIGHT, 2]),
+        red
+        * (near_ground * (tones[BOUNCE, 0] + up * (tones[SKYLIGHT, 0] - tones[BOUNCE, 0])) + lit * tones[SUNLIGHT, 0]),
+        green
+        * (near_ground * (tones[BOUNCE, 1] + up * (tones[SKYLIGHT, 1] - tones[BOUNCE, 1])) + lit * tones[SUNLIGHT, 1]),
+        blue
+        * (near_ground * (tones[BOUNCE, 2] + up * (tones[SKYLIGHT, 2] - tones[BOUNCE, 2])) + lit * tones[SUNLIGHT, 2]),
     )
-    if material == _GLASS or material == _FACADE_GLASS or material == _WATER or material == _PAINT:
+    if material in (_GLASS, _FACADE_GLASS, _WATER, _PAINT):
         graze = 1.0 - max(facing, 0.0)
         graze *= graze
         graze *= graze
         share = 0.03 + 0.4 * graze if material == _PAINT else 0.15 + 0.65 * graze
-        colour = _mirrored(tones, clouds, colour, share, dx + 2.0 * facing * nx, dy + 2.0 * facing * ny, dz + 2.0 * facing * nz)
+        colour = _mirrored(
+            tones, clouds, colour, share, dx + 2.0 * facing * nx, dy + 2.0 * facing * ny, dz + 2.0 * facing * nz
+        )
     return _hazed(tones, haze_m, colour, distance, dx, dy, dz)
 
 
 @kernel
 def shade(
-    surfaces: Surfaces, looks: GroundLooks, textures: Textures, light: Light, maps: ShadowMaps, view: Projection,
-    canvas: Canvas, curve: NDArray[np.uint8], wanted: NDArray[np.uint8], owners: NDArray[np.int32],
-    triangles: NDArray[np.int32], picture: NDArray[np.uint8],
+    surfaces: Surfaces,
+    looks: GroundLooks,
+    textures: Textures,
+    light: Light,
+    maps: ShadowMaps,
+    view: Projection,
+    canvas: Canvas,
+    curve: NDArray[np.uint8],
+    wanted: NDArray[np.uint8],
+    owners: NDArray[np.int32],
+    triangles: NDArray[np.int32],
+    picture: NDArray[np.uint8],
 ) -> bool:
     """Set the picture, shape (height, width, 3); return whether all shadow tiles that it needs were there.
 
@@ -442,16 +571,86 @@ def shade(
                     py = eye[1] + dy * distance
                     pz = eye[2] + dz * distance
                     if owners[k] == GROUND:
+                        mirror = (0.0, 0.0, 0.0, 0.0)
+                        if wetness > 0.0:
+                            mirror = _mirror_image(
+                                seen_nearness,
+                                seen_owners,
+                                picture,
+                                samples,
+                                eye,
+                                axes,
+                                focal,
+                                centre_x,
+                                centre_y,
+                                px,
+                                py,
+                                dx,
+                                dy,
+                                -dz,
+                            )
                         colour = _ground(
-                            codes, corner, materials, colours, averages, layout, texels, starts, per_metre, size, tones,
-                            clouds, haze_m, shadow, soft, wetness, frame, fine_pages, fine,
-                            coarse_pages, coarse, wanted, px, py, distance, dx, dy, dz, pixel,
+                            codes,
+                            corner,
+                            materials,
+                            colours,
+                            averages,
+                            layout,
+                            texels,
+                            starts,
+                            per_metre,
+                            size,
+                            tones,
+                            clouds,
+                            haze_m,
+                            shadow,
+                            soft,
+                            wetness,
+                            frame,
+                            fine_pages,
+                            fine,
+                            coarse_pages,
+                            coarse,
+                            wanted,
+                            mirror,
+                            px,
+                            py,
+                            distance,
+                            dx,
+                            dy,
+                            dz,
+                            pixel,
                         )
                     else:
                         colour = _surface(
-                            faces, stands, texels, starts, per_metre, size, tones, clouds, haze_m, shadow,
-                            soft, lamps, frame, fine_pages, fine, coarse_pages, coarse, wanted, owners[k],
-                            triangles[k], px, py, pz, distance, dx, dy, dz, pixel,
+                            faces,
+                            stands,
+                            texels,
+                            starts,
+                            per_metre,
+                            size,
+                            tones,
+                            clouds,
+                            haze_m,
+                            shadow,
+                            soft,
+                            lamps,
+                            frame,
+                            fine_pages,
+                            fine,
+                            coarse_pages,
+                            coarse,
+                            wanted,
+                            owners[k],
+                            triangles[k],
+                            px,
+                            py,
+                            pz,
+                            distance,
+                            dx,
+                            dy,
+                            dz,
+                            pixel,
                         )
                 red += same * colour[0]
                 green += same * colour[1]

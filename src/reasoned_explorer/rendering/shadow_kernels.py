@@ -72,9 +72,21 @@ def _filtered(tiles: NDArray[np.uint16], page: int, u: float, v: float, height: 
 
 @inlined
 def sunlight_at(
-    frame: NDArray[np.float64], fine_pages: NDArray[np.int32], fine_tiles: NDArray[np.uint16],
-    coarse_pages: NDArray[np.int32], coarse_tiles: NDArray[np.uint16], soft: bool, wanted: NDArray[np.uint8], x: float,
-    y: float, z: float, nx: float, ny: float, nz: float, distance: float, pixel: float,
+    frame: NDArray[np.float64],
+    fine_pages: NDArray[np.int32],
+    fine_tiles: NDArray[np.uint16],
+    coarse_pages: NDArray[np.int32],
+    coarse_tiles: NDArray[np.uint16],
+    soft: bool,
+    wanted: NDArray[np.uint8],
+    x: float,
+    y: float,
+    z: float,
+    nx: float,
+    ny: float,
+    nz: float,
+    distance: float,
+    pixel: float,
 ) -> float:
     """The share of the sun's light that reaches a point, in [0, 1].
 
@@ -128,16 +140,14 @@ def sunlight_at(
 
 
 @inlined
-def _cast_triangle(
-    corners: NDArray[np.float64], a: int, b: int, c: int, tile: NDArray[np.uint16]
-) -> None:
+def _cast_triangle(corners: NDArray[np.float64], a: int, b: int, c: int, tile: NDArray[np.uint16]) -> None:
     """Raise a tile's heights by a triangle, half a texel wider than it is so that thin things have shadows too."""
     xa, ya, za = corners[a, 0], corners[a, 1], corners[a, 2]
     xb, yb, zb = corners[b, 0], corners[b, 1], corners[b, 2]
     xc, yc, zc = corners[c, 0], corners[c, 1], corners[c, 2]
     side = tile.shape[0]
-    first_x, last_x = math.ceil(min(xa, min(xb, xc)) - 1.0), math.floor(max(xa, max(xb, xc)))
-    first_y, last_y = math.ceil(min(ya, min(yb, yc)) - 1.0), math.floor(max(ya, max(yb, yc)))
+    first_x, last_x = math.ceil(min(xa, xb, xc) - 1.0), math.floor(max(xa, xb, xc))
+    first_y, last_y = math.ceil(min(ya, yb, yc) - 1.0), math.floor(max(ya, yb, yc))
     if first_x >= side or last_x < 0 or first_y >= side or last_y < 0:
         return
     area = (xb - xa) * (yc - ya) - (xc - xa) * (yb - ya)
@@ -145,7 +155,7 @@ def _cast_triangle(
         xb, yb, zb, xc, yc, zc = xc, yc, zc, xb, yb, zb
         area = -area
     first_x, last_x, first_y, last_y = max(first_x, 0), min(last_x, side - 1), max(first_y, 0), min(last_y, side - 1)
-    low, high = min(za, min(zb, zc)), max(za, max(zb, zc))
+    low, high = min(za, zb, zc), max(za, zb, zc)
     if area < 1e-9:  # seen from its edge: a line
         slope_x, slope_y = 0.0, 0.0
         za = high
@@ -167,14 +177,21 @@ def _cast_triangle(
                 continue
             z = min(max(za + slope_x * (x - xa) + slope_y * (y - ya), low), high)
             height = int(min(z, 650.0) * _PER_METRE) + 1 if z > 0.0 else 0
-            if height > tile[row, column]:
-                tile[row, column] = height
+            tile[row, column] = max(tile[row, column], height)
 
 
 @kernel
 def cast(
-    library: Library, instances: Instances, footprints: NDArray[np.float64], shear: NDArray[np.float64], west: float,
-    south: float, texel: float, coarser: int, corners: NDArray[np.float64], tile: NDArray[np.uint16],
+    library: Library,
+    instances: Instances,
+    footprints: NDArray[np.float64],
+    shear: NDArray[np.float64],
+    west: float,
+    south: float,
+    texel: float,
+    coarser: int,
+    corners: NDArray[np.float64],
+    tile: NDArray[np.uint16],
 ) -> None:
     """Set a tile.
 
