@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from reasoned_explorer.rendering.compiling import inlined, kernel
+from reasoned_explorer.rendering.compiling import inlined, kernel, part
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.projection import Projection
 from reasoned_explorer.rendering.raster_kernels import GROUND, SKY, Canvas
@@ -106,7 +106,7 @@ class Light(NamedTuple):
 SUN, SUNLIGHT, SKYLIGHT, BOUNCE, ZENITH, HORIZON, GLOW, CLOUD = range(8)
 
 
-@inlined
+@part
 def _halvings(size: float, most: int) -> tuple[int, float]:
     """How often a size can be halved until it is below 2, at most ``most`` times, and what is left, at least 1."""
     count = 0
@@ -116,7 +116,7 @@ def _halvings(size: float, most: int) -> tuple[int, float]:
     return count, min(max(size, 1.0), 2.0)
 
 
-@inlined
+@part
 def _level_texel(t: Texels, starts: Ints, size: int, material: int, u: float, v: float, level: int) -> Rgb:
     """A texture's colour, bilinear in one level; u and v count repetitions."""
     side = size >> level
@@ -137,7 +137,7 @@ def _level_texel(t: Texels, starts: Ints, size: int, material: int, u: float, v:
     )
 
 
-@inlined
+@part
 def _texel(
     texels: Texels,
     starts: Ints,
@@ -165,7 +165,7 @@ def _texel(
     return red, green, blue
 
 
-@inlined
+@part
 def _sky(tones: Floats, clouds: Texels, x: float, y: float, z: float) -> Rgb:
     """The sky in a direction of length 1."""
     up = max(z, 0.0)
@@ -198,7 +198,7 @@ def _sky(tones: Floats, clouds: Texels, x: float, y: float, z: float) -> Rgb:
     return red, green, blue
 
 
-@inlined
+@part
 def _hazed(tones: Floats, haze_m: float, colour: Rgb, distance: float, x: float, y: float, z: float) -> Rgb:
     """What is left of a colour after the air before it; the direction is of length 1."""
     thick = distance / haze_m
@@ -213,7 +213,7 @@ def _hazed(tones: Floats, haze_m: float, colour: Rgb, distance: float, x: float,
     )
 
 
-@inlined
+@part
 def _mirrored(tones: Floats, clouds: Texels, colour: Rgb, share: float, x: float, y: float, z: float) -> Rgb:
     """A colour with a share of what is seen of the surroundings in a mirrored direction."""
     seen = _sky(tones, clouds, x, y, abs(z))
@@ -227,7 +227,7 @@ def _mirrored(tones: Floats, clouds: Texels, colour: Rgb, share: float, x: float
     )
 
 
-@inlined
+@part
 def _mirror_image(
     nearness: Texels,
     owners: Pages,
@@ -272,7 +272,7 @@ def _mirror_image(
     return 0.0, 0.0, 0.0, 0.0
 
 
-@inlined
+@part
 def _kind_at(codes: Codes, corner: Floats, x: float, y: float) -> int:
     """The kind of ground at a point: the one with most weight among the four nearest cells."""
     rows, columns = codes.shape
@@ -300,7 +300,7 @@ def _kind_at(codes: Codes, corner: Floats, x: float, y: float) -> int:
     return d if sum_d > most else kind
 
 
-@inlined
+@part
 def _average_at(corner: Floats, averages: Texels, layout: Ints, x: float, y: float, cells: float) -> Rgb:
     """The mean colour of the ground around a point, over about so many cells across."""
     level = _halvings(cells * 0.35, layout.shape[0] - 1)[0]
