@@ -27,6 +27,7 @@ import numpy as np
 
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Camera
+from reasoned_explorer.rendering.projection import projection_of
 from reasoned_explorer.rendering.renderer import Renderer
 from reasoned_explorer.rendering.scene import Scene
 from reasoned_explorer.world.opening import open_world
@@ -39,6 +40,7 @@ import time
 begin = time.perf_counter()
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Camera
+from reasoned_explorer.rendering.projection import projection_of
 from reasoned_explorer.rendering.renderer import Renderer
 from reasoned_explorer.rendering.scene import Scene
 from reasoned_explorer.world.opening import open_world
@@ -120,7 +122,7 @@ def beside_embree(renderer: Renderer, places: list[Pose]) -> None:
         return
     casts, draws, wrong = [], [], []
     for place in places:
-        view = oracle.projection_of(place, VIEW)
+        view = projection_of(place, VIEW)
         begin = time.thread_time()
         renderer.ids(place, VIEW)
         draws.append(time.thread_time() - begin)

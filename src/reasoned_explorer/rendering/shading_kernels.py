@@ -232,6 +232,7 @@ def _mirror_image(
     nearness: Texels,
     owners: Pages,
     picture: Codes,
+    below: int,
     samples: int,
     eye: Floats,
     axes: Floats,
@@ -247,8 +248,8 @@ def _mirror_image(
     """What is seen from a point (x, y) of the ground in a direction, as far as it is in the picture and drawn already.
 
     Returns:
-        Linear light, and 1, or 0 where nothing was found. What is mirrored lies above in the picture, whose upper rows
-        are there already.
+        Linear light, and 1, or 0 where nothing was found. What is mirrored lies above in the picture, whose rows
+        before ``below`` are there already.
     """
     step = 0.15
     reach = 0.0
@@ -267,6 +268,8 @@ def _mirror_image(
         seen = nearness[row, column]
         if owners[row, column] >= 0 and seen * depth > 1.0 and (depth - step * 1.5 - 0.2) * seen < 1.0:
             row, column = (row >> 1, column >> 1) if samples == 2 else (row, column)
+            if row >= below:
+                break
             red, green, blue = picture[row, column, 0], picture[row, column, 1], picture[row, column, 2]
             return red * red / 65025.0, green * green / 65025.0, blue * blue / 65025.0, 1.0
     return 0.0, 0.0, 0.0, 0.0
@@ -577,6 +580,7 @@ def shade(
                                 seen_nearness,
                                 seen_owners,
                                 picture,
+                                y,
                                 samples,
                                 eye,
                                 axes,
