@@ -149,12 +149,13 @@ def run_from_options(options: RunOptions) -> None:
             for line in progress.lines(step):
                 console.print(line, markup=False, soft_wrap=True)
 
-    with options.models.taping(desk, mission):
+    with options.models.taping(desk, mission, folder):
         result = mission.run(folder=folder, on_step=on_step)
     for line in summary_lines(result.record):
         console.print(line, markup=False, soft_wrap=True)
     _keep(result, folder, draw=options.draw)
     console.print(f"kept in {folder}", markup=False, soft_wrap=True)
+    options.models.say_how_to_go_on(desk, folder)
     raise typer.Exit(_exit_code(result))
 
 

@@ -152,7 +152,8 @@ def _name_checks(settings: MissionSettings) -> list[tuple[str, Callable[[], obje
 
 def models_of(settings: MissionSettings) -> tuple[str, ...]:
     """Return the models that a mission calls, each once."""
-    return tuple(dict.fromkeys(name for name in minds_of(settings).values() if is_model_name(name)))
+    names = (*minds_of(settings).values(), settings.captioner)
+    return tuple(dict.fromkeys(name for name in names if is_model_name(name)))
 
 
 def _check_mind(name: str) -> None:
