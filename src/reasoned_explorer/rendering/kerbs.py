@@ -1,0 +1,203 @@
+"""Kerbs along carriageways, and what edges water: quays and banks."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from reasoned_explorer.rendering.crossings import Crossings
+from reasoned_explorer.rendering.material import Material
+from reasoned_explorer.rendering.patches import Patch, lifted, plan_uvs, quads, rectangle_uvs
+from reasoned_explorer.world.raster import GroundRaster
+from reasoned_explorer.world.taxonomy import Ground
+from reasoned_explorer.world.textures import polygon_of
+from reasoned_explorer.world.world import Way, World
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+_KERB_HIGH_M, _KERB_WIDE_M = 0.08, 0.3
+_QUAY_HIGH_M, _QUAY_WIDE_M = 0.16, 0.45
+_LONGEST_M = 12.0
+_SIDE_M = 0.45
+_GRANITE = np.array((0.80, 0.79, 0.77))
+_BANK = np.array((0.55, 0.47, 0.34))
+_KERBED = (Ground.PAVEMENT, Ground.PLAZA, Ground.PATH, Ground.GRASS, Ground.GARDEN, Ground.YARD, Ground.WOOD,
+           Ground.UNKNOWN, Ground.PLAYGROUND)  # fmt: skip
+_PAVED = (Ground.PAVEMENT, Ground.PLAZA, Ground.PATH, Ground.YARD, Ground.ROAD, Ground.UNKNOWN, Ground.PARKING,
+          Ground.CYCLEWAY)  # fmt: skip
+_SOFT = (Ground.GRASS, Ground.WOOD, Ground.GARDEN)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Borders:
+    """Stretches of the borders of areas, the area on their left.
+
+    Attributes:
+        begins: Shape (n, 2), metres.
+        ends: Likewise.
+        begin_out: Where the border moved out by a metre begins, less ``begins``.
+        end_out: Where it ends, less ``ends``.
+    """
+
+    begins: Floats
+    ends: Floats
+    begin_out: Floats
+    end_out: Floats
+
+    @property
+    def middles(self) -> Floats:
+        """Shape (n, 2), metres."""
+        return np.asarray((self.begins + self.ends) / 2.0)
+
+    @property
+    def outwards(self) -> Floats:
+        """Unit directions away from the area, shape (n, 2)."""
+        out = self.begin_out + self.end_out
+        return np.asarray(out / np.maximum(np.hypot(*out.T), 1e-9)[:, None])
+
+    def where(self, chosen: Bools) -> "Borders":
+        """Return some of the stretches."""
+        return Borders(self.begins[chosen], self.ends[chosen], self.begin_out[chosen], self.end_out[chosen])
+
+
+def kerbs(roads: Sequence[Way], ground: GroundRaster, crossings: Crossings) -> list[Patch]:
+    """Return kerbs where a carriageway ends at ground for walkers or plants; they are sunk at crossings."""
+    if not roads:
+        return []
+    lines = np.array([shapely.LineString(road.line) for road in roads], dtype=object)
+    halves = np.array([road.width_m / 2.0 for road in roads])
+    surface = shapely.union_all(shapely.buffer(lines, halves, quad_segs=4))
+    border = _borders_of(surface)
+    beyond = _ground_beside(border, ground, _SIDE_M)
+    within = _ground_beside(border, ground, -_SIDE_M)
+    kept = np.isin(beyond, _KERBED) & (within == Ground.ROAD) & ~_at_crossings(border.middles, crossings)
+    return _edging(border.where(kept), high_m=_KERB_HIGH_M, wide_m=_KERB_WIDE_M, flat=0.0)
+
+
+def shores(world: World, ground: GroundRaster) -> list[Patch]:
+    """Return quays where water meets paving, and banks where it meets green."""
+    water = [polygon_of(one.outer, one.holes) for one in world.regions if one.ground == Ground.WATER]
+    if not water:
+        return []
+    border = _borders_of(shapely.union_all(water))
+    beyond = _ground_beside(border, ground, _SIDE_M)
+    wet = _ground_beside(border, ground, -_SIDE_M) == Ground.WATER
+    quay = _edging(border.where(wet & np.isin(beyond, _PAVED)), high_m=_QUAY_HIGH_M, wide_m=_QUAY_WIDE_M, flat=0.6)
+    return [*quay, _bank(border.where(wet & np.isin(beyond, _SOFT)))]
+
+
+def _borders_of(area: Any) -> Borders:
+    """Return the borders of an area, in stretches of at most `_LONGEST_M`."""
+    polygons = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
+    rings, owner = shapely.get_rings(np.array(polygons, dtype=object), return_index=True)
+    if not len(rings):
+        nothing = np.empty((0, 2))
+        return Borders(nothing, nothing, nothing, nothing)
+    is_hole = np.append(False, owner[1:] == owner[:-1])
+    turned = shapely.is_ccw(rings) == is_hole
+    rings = np.where(turned, shapely.reverse(rings), rings)
+    rings = shapely.segmentize(shapely.simplify(rings, 0.02), _LONGEST_M)
+    points, ring = shapely.get_coordinates(rings, return_index=True)
+    same = ring[1:] == ring[:-1]
+    begins, ends, whose = points[:-1][same], points[1:][same], ring[:-1][same]
+    step = ends - begins
+    normal = np.column_stack([step[:, 1], -step[:, 0]]) / np.maximum(np.hypot(*step.T), 1e-9)[:, None]
+    before, after = _around(whose)
+    return Borders(begins, ends, _mitre(normal[before], normal), _mitre(normal, normal[after]))
+
+
+def _around(whose: Ints) -> tuple[Ints, Ints]:
+    """Return the stretch before and after each on its ring."""
+    count = len(whose)
+    place = np.arange(count)
+    first = np.searchsorted(whose, whose, side="left")
+    beyond = np.searchsorted(whose, whose, side="right")
+    before: Ints = np.where(place == first, beyond - 1, place - 1)
+    after: Ints = np.where(place == beyond - 1, first, place + 1)
+    return before, after
+
+
+def _mitre(one: Floats, other: Floats) -> Floats:
+    total = one + other
+    mitre: Floats = total / np.maximum(1.0 + np.sum(one * other, axis=1), 0.5)[:, None]
+    return mitre
+
+
+def _ground_beside(border: Borders, ground: GroundRaster, off_m: float) -> NDArray[np.uint8]:
+    point = border.middles + off_m * border.outwards
+    return ground.at_many(point[:, 0], point[:, 1])
+
+
+def _at_crossings(points: Floats, crossings: Crossings) -> Bools:
+    """Return which points are where people step off the pavement."""
+    found = np.zeros(len(points), np.bool_)
+    if not len(points) or not len(crossings.middles):
+        return found
+    tree = shapely.STRtree(shapely.points(crossings.middles))
+    reach = float((crossings.road_m / 2.0 + crossings.walk_m).max()) + 2.0
+    at, crossing = tree.query(shapely.points(points), predicate="dwithin", distance=reach)
+    off = points[at] - crossings.middles[crossing]
+    walk = crossings.walks[crossing]
+    aside = np.abs(off[:, 0] * walk[:, 1] - off[:, 1] * walk[:, 0])
+    ahead = np.abs(np.sum(off * walk, axis=1))
+    near = (aside < crossings.walk_m[crossing] / 2.0 + 0.3) & (ahead < crossings.road_m[crossing] / 2.0 + 3.0)
+    found[at[near]] = True
+    return found
+
+
+def _edging(border: Borders, *, high_m: float, wide_m: float, flat: float) -> list[Patch]:
+    """Return stones along a border: upright towards the area, level for a share of their width, then down."""
+    border = _unfolded(border, wide_m)
+    owners = np.zeros(len(border.begins), np.int64)
+    length = np.hypot(*(border.ends - border.begins).T)
+    inner = [lifted(border.begins, 0.0), lifted(border.ends, 0.0)]
+    edge = [lifted(border.begins, high_m), lifted(border.ends, high_m)]
+    crest = [lifted(point + flat * wide_m * out, high_m) for point, out in _both(border)]
+    foot = [lifted(point + wide_m * out, 0.0) for point, out in _both(border)]
+    faces = [
+        (quads(inner[1], inner[0], edge[0], edge[1]), high_m),
+        (quads(crest[1], crest[0], foot[0], foot[1]), wide_m),
+    ]
+    if flat > 0.0:
+        faces.append((quads(edge[1], edge[0], crest[0], crest[1]), flat * wide_m))
+    return [
+        Patch.of(
+            face,
+            rectangle_uvs(0.0, 0.0, length, tall, len(owners)),
+            colours=_GRANITE,
+            materials=int(Material.STONE),
+            owners=owners,
+        )
+        for face, tall in faces
+    ]
+
+
+def _bank(border: Borders) -> Patch:
+    """Return a strip of bare earth along a border, on both its sides."""
+    border = _unfolded(_unfolded(border, 0.5), -0.25)
+    near = [lifted(point - 0.25 * out, 0.014) for point, out in _both(border)]
+    far = [lifted(point + 0.5 * out, 0.014) for point, out in _both(border)]
+    corners = quads(near[1], near[0], far[0], far[1])
+    return Patch.of(
+        corners,
+        plan_uvs(corners),
+        colours=_BANK,
+        materials=int(Material.EARTH),
+        owners=np.zeros(len(corners), np.int64),
+    )
+
+
+def _unfolded(border: Borders, off_m: float) -> Borders:
+    """Return the stretches that still run the same way when moved out."""
+    step = border.ends - border.begins
+    moved = step + off_m * (border.end_out - border.begin_out)
+    return border.where(np.sum(step * moved, axis=1) > 0.0)
+
+
+def _both(border: Borders) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
+    return (border.begins, border.begin_out), (border.ends, border.end_out)

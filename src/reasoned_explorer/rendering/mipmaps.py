@@ -1,0 +1,94 @@
+"""Textures with their mip maps, the ground with its averages, and surfaces, packed for the shader."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reasoned_explorer.rendering.ground import GroundMap
+from reasoned_explorer.rendering.library import Library, linear_from_srgb
+from reasoned_explorer.rendering.scene import Instances
+from reasoned_explorer.rendering.shading_kernels import GroundLooks, Surfaces, Textures
+from reasoned_explorer.rendering.textures import TEXTURE_METRES, texture_stack
+
+_FIRST_BLOCK = 4
+
+
+def textures_of(stack: NDArray[np.float32], metres: NDArray[np.float64]) -> Textures:
+    """Return textures with all their levels.
+
+    Args:
+        stack: One tileable texture for each material, sRGB in [0, 1], shape (materials, side, side, 3), the side a
+            power of two; row 0 is the top.
+        metres: How far one repetition reaches, shape (materials,).
+    """
+    level = linear_from_srgb(np.asarray(stack, np.float32))
+    levels, starts, start = [], [], 0
+    while True:
+        levels.append(level.reshape(-1, 3))
+        starts.append(start)
+        start += len(levels[-1])
+        if level.shape[1] == 1:
+            break
+        pairs = level.reshape(level.shape[0], level.shape[1] // 2, 2, level.shape[2] // 2, 2, 3)
+        level = pairs.mean(axis=(2, 4), dtype=np.float32)
+    texels = np.ascontiguousarray(np.concatenate(levels), np.float32)
+    return Textures(texels, np.array(starts, np.int64), stack.shape[1], 1.0 / np.asarray(metres, np.float64))
+
+
+def material_textures() -> Textures:
+    """Return the textures of all materials."""
+    return textures_of(texture_stack(), TEXTURE_METRES)
+
+
+def ground_looks_of(ground: GroundMap, textures: Textures) -> GroundLooks:
+    """Return the ground with averages of its colours over 4, 8, 16 … cells."""
+    means = textures.texels[textures.starts[-1] :]
+    colours = ground.colours * means[ground.materials]
+    level = _block_means(ground.codes, colours)
+    levels, layout, start = [], [], 0
+    while True:
+        rows, columns = level.shape[:2]
+        levels.append(level.reshape(-1, 3))
+        layout.append((start, rows, columns))
+        start += rows * columns
+        if min(rows, columns) < 2 * _FIRST_BLOCK:
+            break
+        even = level[: rows // 2 * 2, : columns // 2 * 2]
+        level = even.reshape(rows // 2, 2, columns // 2, 2, 3).mean(axis=(1, 3), dtype=np.float32)
+    averages = np.ascontiguousarray(np.concatenate(levels), np.float32)
+    return GroundLooks(
+        ground.codes, np.append(ground.corner, 1.0 / ground.corner[2]), ground.materials, ground.colours, averages, np.array(layout, np.int64)
+    )
+
+
+def _block_means(codes: NDArray[np.uint8], colours: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return mean colours of blocks of 4 × 4 cells; the last ones are padded with the edge."""
+    rows, columns = (-(-side // _FIRST_BLOCK) for side in codes.shape)
+    padded = np.pad(
+        codes, ((0, rows * _FIRST_BLOCK - codes.shape[0]), (0, columns * _FIRST_BLOCK - codes.shape[1])), mode="edge"
+    )
+    total = np.zeros((rows, columns, 3), np.float32)
+    for j in range(_FIRST_BLOCK):
+        for i in range(_FIRST_BLOCK):
+            total += colours[padded[j::_FIRST_BLOCK, i::_FIRST_BLOCK]]
+    return total / np.float32(_FIRST_BLOCK**2)
+
+
+def surfaces_of(library: Library, instances: Instances) -> Surfaces:
+    """Return triangles and instances in lines for the shader."""
+    corners = library.vertices[library.triangles]
+    count = len(corners)
+    faces = np.concatenate(
+        [
+            corners[:, 0],
+            corners[:, 1] - corners[:, 0],
+            corners[:, 2] - corners[:, 0],
+            library.normals.reshape(count, 9),
+            library.uvs.reshape(count, 6),
+            library.colours,
+            library.materials[:, None],
+        ],
+        axis=1,
+        dtype=np.float32,
+    )
+    stands = np.column_stack([instances.places, instances.turns, 1.0 / instances.scales, instances.tints])
+    return Surfaces(np.ascontiguousarray(faces), np.ascontiguousarray(stands, np.float64))

@@ -1,0 +1,176 @@
+"""Pictures of a scene: colour, depth and which thing is seen in every pixel."""
+
+import threading
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reasoned_explorer.geometry import Pose
+from reasoned_explorer.model import Camera
+from reasoned_explorer.rendering.conditions import Conditions
+from reasoned_explorer.rendering.light import developing_curve, light_of, sun_direction
+from reasoned_explorer.rendering.mipmaps import ground_looks_of, material_textures, surfaces_of
+from reasoned_explorer.rendering.projection import Projection, projection_of
+from reasoned_explorer.rendering.raster_kernels import BLOCK, Canvas, Scratch, draw, read_out
+from reasoned_explorer.rendering.scene import Scene
+from reasoned_explorer.rendering.shading_kernels import shade
+from reasoned_explorer.rendering.shadows import ShadowTiles
+
+#: Triangles for each pixel that a thing may fill, at most, where its model has coarser levels.
+DENSITY = 1.5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sighted:
+    """What stands where in a view.
+
+    Attributes:
+        depth_m: Distance along the camera's axis, shape (height, width), float32; infinite in the sky.
+        instances: Instance ids, shape (height, width), int32: 0 the sky, 1 the ground, 2 + k building k of the world,
+            2 + buildings + k object k.
+    """
+
+    depth_m: NDArray[np.float32]
+    instances: NDArray[np.int32]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Picture(Sighted):
+    """What a camera sees.
+
+    Attributes:
+        colour: sRGB, shape (height, width, 3), uint8.
+    """
+
+    colour: NDArray[np.uint8]
+
+
+class Renderer:
+    """Draws pictures of a scene. It may be used from several threads at once, which then really run at once.
+
+    A picture depends on the scene, the conditions, the pose and the camera alone: it is the same, byte for byte, in
+    every process and thread and whatever was drawn before.
+
+    Args:
+        scene: What there is.
+        conditions: Time of day and weather.
+    """
+
+    def __init__(self, scene: Scene, conditions: Conditions | None = None) -> None:
+        self.scene = scene
+        self.conditions = conditions or Conditions()
+        self._light = light_of(self.conditions)
+        self._textures = material_textures()
+        self._surfaces = surfaces_of(scene.library, scene.instances)
+        self._looks = ground_looks_of(scene.ground, self._textures)
+        self._shadows = ShadowTiles(scene, sun_direction(self.conditions))
+        self._curve = developing_curve()
+        self._rooms = threading.local()
+
+    def picture(self, pose: Pose, camera: Camera, *, pitch_rad: float = 0.0, antialias: int = 1) -> Picture:
+        """Return what a camera sees.
+
+        Args:
+            pose: Where the camera is and its compass heading.
+            camera: Size and field of view.
+            pitch_rad: How far it looks up (positive) or down, radians.
+            antialias: Samples along the side of a pixel: 1 or 2. With 2 the id of a pixel is the one that most of its
+                samples show.
+
+        Raises:
+            SettingsError: If any of them is out of range.
+        """
+        view = projection_of(pose, camera, pitch_rad=pitch_rad, antialias=antialias)
+        canvas = self._drawn(view)
+        colour = self._shaded(view, canvas, camera)
+        depth_m, instances = self._read(view, canvas, camera)
+        return Picture(depth_m, instances, colour)
+
+    def ids(self, pose: Pose, camera: Camera, *, pitch_rad: float = 0.0) -> Sighted:
+        """Return depth and instance ids alone, which is much faster; see `picture`."""
+        view = projection_of(pose, camera, pitch_rad=pitch_rad)
+        return Sighted(*self._read(view, self._drawn(view), camera))
+
+    def classes(self, instances: NDArray[np.int32]) -> NDArray[np.uint8]:
+        """Return the classes of instance ids, as places in `PICTURE_CLASSES`, in the same shape."""
+        found: NDArray[np.uint8] = self.scene.classes[instances]
+        return found
+
+    def _drawn(self, view: Projection, *, everything: bool = False) -> Canvas:
+        scene = self.scene
+        canvas = self._canvas(view)
+        draw(scene.library, scene.instances, scene.cells, view, DENSITY, everything, canvas, self._room().scratch)
+        return canvas
+
+    def _read(
+        self, view: Projection, canvas: Canvas, camera: Camera
+    ) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+        depth_m = np.empty((camera.height_px, camera.width_px), np.float32)
+        instances = np.empty((camera.height_px, camera.width_px), np.int32)
+        read_out(canvas, self.scene.instances.ids, view, depth_m, instances)
+        return depth_m, instances
+
+    def _shaded(self, view: Projection, canvas: Canvas, camera: Camera) -> NDArray[np.uint8]:
+        colour = np.empty((camera.height_px, camera.width_px, 3), np.uint8)
+        wanted = self._room().wanted
+        while True:
+            wanted[:] = 0
+            with self._shadows.shading():
+                done = shade(
+                    self._surfaces,
+                    self._looks,
+                    self._textures,
+                    self._light,
+                    self._shadows.maps,
+                    view,
+                    canvas,
+                    self._curve,
+                    wanted,
+                    colour,
+                )
+            if done:
+                return colour
+            self._shadows.make(wanted)
+
+    def _room(self) -> "_Room":
+        if not hasattr(self._rooms, "room"):
+            self._rooms.room = _Room(self.scene, self._shadows.wanted_size)
+        room: _Room = self._rooms.room
+        return room
+
+    def _canvas(self, view: Projection) -> Canvas:
+        canvases = self._room().canvases
+        key = (view.height, view.width)
+        if key not in canvases:
+            canvases.clear()
+            canvases[key] = _new_canvas(*key)
+        return canvases[key]
+
+
+class _Room:
+    """What one thread works in."""
+
+    def __init__(self, scene: Scene, wanted_size: int) -> None:
+        count = len(scene.instances.ids)
+        self.scratch = Scratch(
+            np.empty((int(scene.library.levels[:, 1].max(initial=1)), 5)),
+            np.empty(count, np.int32),
+            np.empty(count, np.int32),
+            np.empty(count),
+            np.empty((count + 1, 4), np.int32),
+            np.empty(count, np.int8),
+        )
+        self.wanted = np.zeros(wanted_size, np.uint8)
+        self.canvases: dict[tuple[int, int], Canvas] = {}
+
+
+def _new_canvas(height: int, width: int) -> Canvas:
+    blocks = (-(-height // BLOCK), -(-width // BLOCK))
+    return Canvas(
+        np.empty((height, width), np.float32),
+        np.empty((height, width), np.int32),
+        np.empty((height, width), np.int32),
+        np.empty(blocks, np.float32),
+        np.empty(blocks, np.uint8),
+    )

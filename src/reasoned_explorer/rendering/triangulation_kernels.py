@@ -1,0 +1,295 @@
+"""Polygons into triangles, exactly: holes are tied in by bridges, then ears are cut off one by one.
+
+Coordinates are whole numbers (millimetres), less than 2^30 in size, so that every question is answered exactly. That a
+simple polygon has two ears, and that a hole's rightmost corner sees a corner to its right, are old truths (Meisters,
+1975; Eberly, "Triangulation by ear clipping", 1998).
+"""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _turn(points: Ints, a: int, b: int, c: int) -> int:
+    """Return twice the area of a triangle: positive if counter-clockwise."""
+    return (points[b, 0] - points[a, 0]) * (points[c, 1] - points[a, 1]) - (points[b, 1] - points[a, 1]) * (
+        points[c, 0] - points[a, 0]
+    )
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _same(points: Ints, a: int, b: int) -> bool:
+    return points[a, 0] == points[b, 0] and points[a, 1] == points[b, 1]
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _between(points: Ints, p: int, a: int, b: int) -> bool:
+    """Return whether a point that is in line with a segment lies on it, ends included."""
+    return min(points[a, 0], points[b, 0]) <= points[p, 0] <= max(points[a, 0], points[b, 0]) and min(
+        points[a, 1], points[b, 1]
+    ) <= points[p, 1] <= max(points[a, 1], points[b, 1])
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _meet(points: Ints, a: int, b: int, c: int, d: int) -> bool:
+    """Return whether two segments share a point that is no end of the first."""
+    abc, abd = _turn(points, a, b, c), _turn(points, a, b, d)
+    cda, cdb = _turn(points, c, d, a), _turn(points, c, d, b)
+    if ((abc > 0 > abd) or (abc < 0 < abd)) and ((cda > 0 > cdb) or (cda < 0 < cdb)):
+        return True
+    for p, turn in ((c, abc), (d, abd)):
+        if turn == 0 and _between(points, p, a, b) and not _same(points, p, a) and not _same(points, p, b):
+            return True
+    return False
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _looks_inside(points: Ints, before: int, at: int, after: int, towards: int, along: bool) -> bool:
+    """Return whether a direction leads from a corner into the polygon on its left, or (``along``) along its edge."""
+    if _turn(points, before, at, after) > 0:
+        least = 0 if along else 1
+        return _turn(points, at, towards, before) >= least and _turn(points, towards, at, after) >= least
+    return not (_turn(points, at, towards, after) >= 0 and _turn(points, towards, at, before) >= 0)
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _bridge(points: Ints, corner: Ints, after: Ints, before: Ints, loop: int, size: int, hole: int, along: bool) -> int:
+    """Return the loop's node that is nearest to a hole's corner and sees it, or -1.
+
+    Where a hole touches the outline, it may only be seen ``along`` an edge.
+
+    Args:
+        points: Shape (n, 2).
+        corner: The point of each node.
+        after: The next node on its ring, of all rings.
+        before: The one before.
+        loop: A node of the loop.
+        size: How many nodes there are, on all rings.
+        hole: The node of the hole that looks.
+        along: Whether it may look along an edge.
+    """
+    tried = np.zeros(size, np.bool_)
+    eye = corner[hole]
+    while True:
+        nearest, gap = -1, np.int64(0)
+        node = loop
+        while True:
+            p = corner[node]
+            if not tried[node] and points[p, 0] >= points[eye, 0]:
+                far = (points[p, 0] - points[eye, 0]) ** 2 + (points[p, 1] - points[eye, 1]) ** 2
+                if nearest < 0 or far < gap:
+                    nearest, gap = node, far
+            node = after[node]
+            if node == loop:
+                break
+        if nearest < 0:
+            return -1
+        tried[nearest] = True
+        p = corner[nearest]
+        if not _looks_inside(points, corner[before[nearest]], p, corner[after[nearest]], eye, along):
+            continue
+        blocked = False
+        for other in range(size):
+            if _meet(points, p, eye, corner[other], corner[after[other]]):
+                blocked = True
+                break
+        if not blocked:
+            return nearest
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _is_ear(points: Ints, corner: Ints, after: Ints, before: Ints, node: int, strict: bool) -> bool:
+    """Return whether no corner of the loop lies in the triangle at a node, or on its border unless ``strict``."""
+    a, b, c = corner[before[node]], corner[node], corner[after[node]]
+    if _turn(points, a, b, c) <= 0:
+        return False
+    low_x, high_x = min(points[a, 0], points[b, 0], points[c, 0]), max(points[a, 0], points[b, 0], points[c, 0])
+    low_y, high_y = min(points[a, 1], points[b, 1], points[c, 1]), max(points[a, 1], points[b, 1], points[c, 1])
+    other = after[after[node]]
+    while other != before[node]:
+        p = corner[other]
+        if low_x <= points[p, 0] <= high_x and low_y <= points[p, 1] <= high_y:
+            one, two, three = _turn(points, a, b, p), _turn(points, b, c, p), _turn(points, c, a, p)
+            inside = one > 0 and two > 0 and three > 0
+            touches = one >= 0 and two >= 0 and three >= 0
+            if inside or (
+                touches
+                and not strict
+                and not _same(points, p, a)
+                and not _same(points, p, b)
+                and not _same(points, p, c)
+            ):
+                return False
+        other = after[other]
+    return True
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _cut_ears(
+    points: Ints, corner: Ints, after: Ints, before: Ints, loop: int, left: int, triangles: Ints, made: int
+) -> int:
+    """Cut a loop of ``left`` nodes into triangles and return how many there are now.
+
+    Where no ear is found, which a proper polygon does not let happen, ever worse ones are taken: it always ends.
+    """
+    node, idle, patience = loop, 0, 0
+    while left > 2:
+        a, b, c = corner[before[node]], corner[node], corner[after[node]]
+        if patience < 2:
+            cuts = _is_ear(points, corner, after, before, node, patience == 1)
+        else:
+            cuts = patience == 3 or _turn(points, a, b, c) >= 0
+        if not cuts:
+            node = after[node]
+            idle += 1
+            if idle > left:
+                idle, patience = 0, patience + 1
+            continue
+        if _turn(points, a, b, c) > 0:
+            triangles[made, 0], triangles[made, 1], triangles[made, 2] = a, b, c
+            made += 1
+        after[before[node]] = after[node]
+        before[after[node]] = before[node]
+        # On to the node after the next: fewer needles than cutting fans.
+        node = after[after[node]]
+        left -= 1
+        idle = patience = 0
+    return made
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _link_rings(ring_starts: Ints, first: int, beyond: int, corner: Ints, after: Ints, before: Ints) -> int:
+    """Make a node for every corner of rings and return how many there are."""
+    size = 0
+    for ring in range(first, beyond):
+        begin = size
+        for point in range(ring_starts[ring], ring_starts[ring + 1]):
+            corner[size] = point
+            after[size], before[size] = size + 1, size - 1
+            size += 1
+        if size > begin:
+            after[size - 1], before[begin] = begin, size - 1
+    return size
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _rightmost(points: Ints, corner: Ints, begin: int, end: int) -> int:
+    best = begin
+    for node in range(begin + 1, end):
+        if points[corner[node], 0] > points[corner[best], 0]:
+            best = node
+    return best
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def triangulate_all(points: Ints, ring_starts: Ints, polygon_starts: Ints) -> tuple[Ints, Ints]:
+    """Cut polygons into triangles.
+
+    Args:
+        points: Corners of all rings, shape (n, 2), whole numbers; outlines counter-clockwise, holes clockwise.
+        ring_starts: Where each ring begins in ``points``, and where the last ends.
+        polygon_starts: Where each polygon's rings begin, its outline first, and where the last ends.
+
+    Returns:
+        Triangles, counter-clockwise, as places in ``points``, shape (m, 3); and where each polygon's triangles begin,
+        and the last's end.
+    """
+    polygons = len(polygon_starts) - 1
+    triangles = np.empty((len(points) + 2 * len(ring_starts), 3), np.int64)
+    starts = np.zeros(polygons + 1, np.int64)
+    made = 0
+    for polygon in range(polygons):
+        first, beyond = polygon_starts[polygon], polygon_starts[polygon + 1]
+        rings = beyond - first
+        room = 1 if rings == 0 else ring_starts[beyond] - ring_starts[first] + 2 * rings
+        corner, after, before = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
+        size = _link_rings(ring_starts, first, beyond, corner, after, before) if rings > 0 else 0
+        left = ring_starts[first + 1] - ring_starts[first] if rings > 0 else 0
+        eyes = np.empty(max(rings - 1, 0), np.int64)
+        reach = np.empty(max(rings - 1, 0), np.int64)
+        for hole in range(rings - 1):
+            begin = ring_starts[first + hole + 1] - ring_starts[first]
+            end = ring_starts[first + hole + 2] - ring_starts[first]
+            eyes[hole] = _rightmost(points, corner, begin, end)
+            reach[hole] = -points[corner[eyes[hole]], 0]
+        for hole in np.argsort(reach, kind="mergesort"):
+            eye = eyes[hole]
+            seen = _bridge(points, corner, after, before, 0, size, eye, False)
+            if seen < 0:
+                seen = _bridge(points, corner, after, before, 0, size, eye, True)
+            if seen < 0:
+                continue
+            # Out along the bridge, around the hole, and back on doubles of both ends.
+            corner[size], corner[size + 1] = corner[eye], corner[seen]
+            after[before[eye]], before[size] = size, before[eye]
+            after[size], before[size + 1] = size + 1, size
+            after[size + 1], before[after[seen]] = after[seen], size + 1
+            after[seen], before[eye] = eye, seen
+            size += 2
+            left += ring_starts[first + hole + 2] - ring_starts[first + hole + 1] + 2
+        if left > 2:
+            made = _cut_ears(points, corner, after, before, 0, left, triangles, made)
+        starts[polygon + 1] = made
+    return triangles[:made], starts
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _tidy(points: Ints, begin: int, end: int, slack: int, kept: Ints) -> int:
+    """Write the corners that shape a ring into ``kept`` and return how many there are.
+
+    A corner goes that is within ``slack`` of the one before, or of the line between its neighbours, until none does.
+    """
+    count = 0
+    for point in range(begin, end):
+        kept[count] = point
+        count += 1
+    at, calm = 0, 0
+    while count > 2 and calm < count:
+        a, b, c = kept[(at - 1) % count], kept[at % count], kept[(at + 1) % count]
+        span = (points[c, 0] - points[a, 0]) ** 2 + (points[c, 1] - points[a, 1]) ** 2
+        step = (points[b, 0] - points[a, 0]) ** 2 + (points[b, 1] - points[a, 1]) ** 2
+        turn = float(_turn(points, a, b, c))
+        if step <= slack * slack or turn * turn <= float(slack * slack) * span:
+            for later in range(at % count, count - 1):
+                kept[later] = kept[later + 1]
+            count -= 1
+            at, calm = max(at - 1, 0), 0
+        else:
+            at, calm = (at + 1) % count, calm + 1
+    return count
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def tidy_rings(points: Ints, ring_starts: Ints, is_hole: Bools, slack: int, least_area: int) -> tuple[Ints, Ints]:
+    """Return rings without corners that shape nothing, outlines counter-clockwise and holes clockwise.
+
+    Args:
+        points: Shape (n, 2), whole numbers.
+        ring_starts: Where each ring begins in ``points``, and where the last ends.
+        is_hole: Of each ring.
+        slack: How far a corner may be off the line and still go.
+        least_area: Rings of less than this lose all their corners.
+
+    Returns:
+        Places in ``points`` of the corners that stay, and where each ring begins in them, and the last ends.
+    """
+    found = np.empty(len(points), np.int64)
+    starts = np.zeros(len(ring_starts), np.int64)
+    size = 0
+    for ring in range(len(ring_starts) - 1):
+        kept = found[size:]
+        count = _tidy(points, ring_starts[ring], ring_starts[ring + 1], slack, kept)
+        twice = np.int64(0)
+        for at in range(1, count - 1):
+            twice += _turn(points, kept[0], kept[at], kept[at + 1])
+        if count < 3 or abs(twice) < 2 * least_area:
+            count = 0
+        elif (twice > 0) == is_hole[ring]:
+            kept[:count] = kept[:count][::-1].copy()
+        size += count
+        starts[ring + 1] = size
+    return found[:size], starts
