@@ -116,9 +116,17 @@ class OpenAIModel:
         """Parameters that the server refused and that are left out since, such as the seed of models without one."""
         return self._without
 
-    def asking(self, structure: Structure) -> "OpenAIModel":
-        """Return the same model, asked for the form of its answers in another way; client and pace stay shared."""
-        settings = replace(self._settings, structure=structure)
+    def asking(self, structure: Structure, *, most_at_once: int | None = None) -> "OpenAIModel":
+        """Return the same model, asked for the form of its answers in another way, with the same client.
+
+        Args:
+            structure: How the form is asked for.
+            most_at_once: At most so many calls at once; None for as many as before, with which the pace is shared, too.
+        """
+        limits = self._settings.limits
+        if most_at_once is not None:
+            limits = replace(limits, most_at_once=min(most_at_once, limits.most_at_once))
+        settings = replace(self._settings, structure=structure, limits=limits)
         other = OpenAIModel(self._model, self.endpoint, settings=settings, price=self.price)
         other._without, other._length_name = self._without - {"response_format"}, self._length_name
         other._knows_system = self._knows_system

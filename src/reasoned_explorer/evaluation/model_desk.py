@@ -1,5 +1,6 @@
 """The models that missions call by name: made once, looked into once, and what all their calls have in common."""
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -21,6 +22,8 @@ from reasoned_explorer.model.checks import is_there
 
 #: Of models on this machine.
 LOCAL_PREFIX = "hf:"
+#: So many calls are made at once to see how many go on at once; a server is taken to have no limit from this share on.
+_TOGETHER, _UNLIMITED_SHARE = 8, 0.75
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +111,9 @@ class ModelDesk:
             return KnownModel(local, _found_out(local, together=2), priced=True)
         model = openai_model(name, base_url=self._base_url, settings=self._asking)
         abilities = _found_out(model)
-        return KnownModel(model.asking(abilities.structure), abilities, model.price is not None)
+        at_once = _most_at_once(abilities) if model.is_local else None
+        asked = model.asking(abilities.structure, most_at_once=at_once)
+        return KnownModel(asked, abilities, model.price is not None)
 
     def caller(self, name: str, clock: Clock, ledger: Ledger) -> Caller:
         """Return who asks a model for a mission.
@@ -163,11 +168,22 @@ class ModelDesk:
             raise RecordError("replay", faults)
 
 
-def _found_out(model: ChatModel, *, together: int = 8) -> Abilities:
+def _found_out(model: ChatModel, *, together: int = _TOGETHER) -> Abilities:
     abilities = run_live(lambda: probe(model, together=together))
     if not abilities.answers:
         raise PartError(model.name, f"it does not answer: {'; '.join(abilities.faults) or 'no reason given'}")
     return abilities
+
+
+def _most_at_once(abilities: Abilities) -> int | None:
+    """Return how many calls at once a server on this machine bears; None where it was not seen to have a limit.
+
+    Most of them answer one or a few calls at a time, and what waits in their line runs out of time there, is given up
+    and is worked on all the same. Twice as many as go on at once keep such a server busy; the others wait here, where
+    waiting costs no try. Elsewhere the measure says too little: a network's delays look like a limit.
+    """
+    limited = abilities.parallel < _UNLIMITED_SHARE * _TOGETHER
+    return math.ceil(2.0 * abilities.parallel) if limited else None
 
 
 def _taped(name: str, player: TapePlayer) -> KnownModel:
