@@ -176,10 +176,12 @@ class OpenAIModel:
             # Spread, so that what failed together is not tried again together.
             wait_s = min(_LONGEST_BACK_OFF_S, settings.back_off_s * 2.0 ** (spent.tries - 1)) * random.uniform(0.75, 1)
             if not again or spent.tries >= settings.tries or left_s <= wait_s:
-                if not (end.cannot_read and request.system and knows_system and self._knows_system is None):
+                # Nothing that had a system was ever answered: perhaps the model knows none, as Gemma 2.
+                may_know_none = end.cannot_read and request.system and knows_system and self._knows_system is None
+                wait_s = settings.back_off_s  # a server that failed may be closing the connection
+                if not may_know_none or left_s <= wait_s:
                     return self._given_up(spent, fault, reading)
                 knows_system = False
-                continue
             left_s -= wait_s
             await asyncio.sleep(wait_s)
 
