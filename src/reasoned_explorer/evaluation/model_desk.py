@@ -1,5 +1,6 @@
 """The models that missions call by name: made once, looked into once, and what all their calls have in common."""
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
@@ -23,6 +24,8 @@ from reasoned_explorer.model.checks import is_there
 
 #: Of models on this machine.
 LOCAL_PREFIX = "hf:"
+#: So many calls are made at once to see how many go on at once; a server is taken to have no limit from this share on.
+_TOGETHER, _UNLIMITED_SHARE = 8, 0.75
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +133,9 @@ class ModelDesk:
             prices=self._prices,
         )
         abilities = self._abilities.get(name) or _found_out(model)
-        return KnownModel(model.asking(abilities.structure), abilities, model.price is not None)
+        at_once = _most_at_once(abilities) if model.is_local else None
+        asked = model.asking(abilities.structure, most_at_once=at_once)
+        return KnownModel(asked, abilities, model.price is not None)
 
     def caller(self, name: str, clock: Clock, ledger: Ledger) -> Caller:
         """Return who asks a model for a mission.
@@ -237,7 +242,7 @@ class ModelDesk:
             raise RecordError("replay", faults)
 
 
-def _found_out(model: ChatModel, *, together: int = 8) -> Abilities:
+def _found_out(model: ChatModel, *, together: int = _TOGETHER) -> Abilities:
     abilities = run_live(lambda: probe(model, together=together))
     if not abilities.answers:
         raise PartError(model.name, f"it does not answer: {'; '.join(abilities.faults) or 'no reason given'}")
@@ -263,6 +268,17 @@ def _past_of(tape: Path, mission: Mapping[str, Any]) -> TapePlayer | None:
     except RecordError:
         return None
     return past if past is not None and past.about.get("mission") == mission else None
+
+
+def _most_at_once(abilities: Abilities) -> int | None:
+    """Return how many calls at once a server on this machine bears; None where it was not seen to have a limit.
+
+    Most of them answer one or a few calls at a time, and what waits in their line runs out of time there, is given up
+    and is worked on all the same. Twice as many as go on at once keep such a server busy; the others wait here, where
+    waiting costs no try. Elsewhere the measure says too little: a network's delays look like a limit.
+    """
+    limited = abilities.parallel < _UNLIMITED_SHARE * _TOGETHER
+    return math.ceil(2.0 * abilities.parallel) if limited else None
 
 
 def _taped(name: str, player: TapePlayer) -> KnownModel:

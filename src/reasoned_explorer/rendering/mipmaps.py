@@ -56,7 +56,12 @@ def ground_looks_of(ground: GroundMap, textures: Textures) -> GroundLooks:
         level = even.reshape(rows // 2, 2, columns // 2, 2, 3).mean(axis=(1, 3), dtype=np.float32)
     averages = np.ascontiguousarray(np.concatenate(levels), np.float32)
     return GroundLooks(
-        ground.codes, np.append(ground.corner, 1.0 / ground.corner[2]), ground.materials, ground.colours, averages, np.array(layout, np.int64)
+        ground.codes,
+        np.append(ground.corner, 1.0 / ground.corner[2]),
+        ground.materials,
+        ground.colours,
+        averages,
+        np.array(layout, np.int64),
     )
 
 

@@ -196,9 +196,7 @@ def _mark_stale(canvas: Canvas, rectangle: NDArray[np.int32]) -> None:
 
 
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
-def _level_of(
-    library: Library, instances: Instances, i: int, distance: float, pixels: float, density: float
-) -> int:
+def _level_of(library: Library, instances: Instances, i: int, distance: float, pixels: float, density: float) -> int:
     """Which level of detail: the finest with at most ``density`` triangles for each pixel that the thing may fill."""
     radius = instances.balls[i, 3] * pixels / max(distance, 0.25)
     wanted = density * math.pi * radius * radius + 12.0
@@ -316,7 +314,12 @@ def _fill_triangle(
 
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
 def _draw_level(
-    library: Library, level: int, matrix: NDArray[np.float64], owner: int, view: Projection, canvas: Canvas,
+    library: Library,
+    level: int,
+    matrix: NDArray[np.float64],
+    owner: int,
+    view: Projection,
+    canvas: Canvas,
     corners: NDArray[np.float64],
 ) -> None:
     first, count = library.levels[level, 0], library.levels[level, 1]
@@ -343,7 +346,12 @@ def _draw_level(
 
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
 def _collect(
-    library: Library, instances: Instances, cells: Cells, view: Projection, everything: bool, scratch: Scratch,
+    library: Library,
+    instances: Instances,
+    cells: Cells,
+    view: Projection,
+    everything: bool,
+    scratch: Scratch,
     matrix: NDArray[np.float64],
 ) -> int:
     """Set the candidates: what may be in the picture. Returns how many."""
@@ -388,8 +396,14 @@ def _order(scratch: Scratch, count: int) -> None:
 
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
 def draw(
-    library: Library, instances: Instances, cells: Cells, view: Projection, density: float, everything: bool,
-    canvas: Canvas, scratch: Scratch,
+    library: Library,
+    instances: Instances,
+    cells: Cells,
+    view: Projection,
+    density: float,
+    everything: bool,
+    canvas: Canvas,
+    scratch: Scratch,
 ) -> None:
     """Find out what is seen in every sample.
 
@@ -447,7 +461,11 @@ def read_out(
                     max(nearness, canvas.nearness[row, column + 1]),
                     max(canvas.nearness[row + 1, column], canvas.nearness[row + 1, column + 1]),
                 )
-                others = canvas.owners[row, column + 1], canvas.owners[row + 1, column], canvas.owners[row + 1, column + 1]
+                others = (
+                    canvas.owners[row, column + 1],
+                    canvas.owners[row + 1, column],
+                    canvas.owners[row + 1, column + 1],
+                )
                 if others[0] != owner or others[1] != owner or others[2] != owner:
                     owner, nearness = _most_seen(canvas, ids, row, column)
             found[y, x] = _id_of(owner, ids)

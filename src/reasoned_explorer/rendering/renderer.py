@@ -103,9 +103,7 @@ class Renderer:
         draw(scene.library, scene.instances, scene.cells, view, DENSITY, everything, canvas, self._room().scratch)
         return canvas
 
-    def _read(
-        self, view: Projection, canvas: Canvas, camera: Camera
-    ) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+    def _read(self, view: Projection, canvas: Canvas, camera: Camera) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
         depth_m = np.empty((camera.height_px, camera.width_px), np.float32)
         instances = np.empty((camera.height_px, camera.width_px), np.int32)
         read_out(canvas, self.scene.instances.ids, view, depth_m, instances)

@@ -137,7 +137,14 @@ def _level_texel(t: Texels, starts: Ints, size: int, material: int, u: float, v:
 
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
 def _texel(
-    texels: Texels, starts: Ints, per_metre: Floats, size: int, material: int, u_m: float, v_m: float, footprint_m: float
+    texels: Texels,
+    starts: Ints,
+    per_metre: Floats,
+    size: int,
+    material: int,
+    u_m: float,
+    v_m: float,
+    footprint_m: float,
 ) -> Rgb:
     """A texture's colour at a place on a surface, blurred to the pixel's footprint there."""
     scale = per_metre[material]
@@ -270,10 +277,35 @@ def _average_at(corner: Floats, averages: Texels, layout: Ints, x: float, y: flo
 
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
 def _ground(
-    codes: Codes, corner: Floats, materials: Codes, colours: Texels, averages: Texels, layout: Ints, texels: Texels,
-    starts: Ints, per_metre: Floats, size: int, tones: Floats, clouds: Texels, haze_m: float, shadow: float, soft: bool,
-    wetness: float, frame: Floats, fine_pages: Pages, fine: Tiles, coarse_pages: Pages, coarse: Tiles, wanted: Codes,
-    x: float, y: float, distance: float, dx: float, dy: float, dz: float, pixel: float,
+    codes: Codes,
+    corner: Floats,
+    materials: Codes,
+    colours: Texels,
+    averages: Texels,
+    layout: Ints,
+    texels: Texels,
+    starts: Ints,
+    per_metre: Floats,
+    size: int,
+    tones: Floats,
+    clouds: Texels,
+    haze_m: float,
+    shadow: float,
+    soft: bool,
+    wetness: float,
+    frame: Floats,
+    fine_pages: Pages,
+    fine: Tiles,
+    coarse_pages: Pages,
+    coarse: Tiles,
+    wanted: Codes,
+    x: float,
+    y: float,
+    distance: float,
+    dx: float,
+    dy: float,
+    dz: float,
+    pixel: float,
 ) -> Rgb:
     """The light from a point of the ground; (dx, dy, dz) is where the eye looks, of length 1."""
     lift = max(-dz, 1e-4)
@@ -292,7 +324,9 @@ def _ground(
         red += share * (mean[0] - red)
         green += share * (mean[1] - green)
         blue += share * (mean[2] - blue)
-    lit = sunlight_at(frame, fine_pages, fine, coarse_pages, coarse, soft, wanted, x, y, 0.0, 0.0, 0.0, 1.0, distance, pixel)
+    lit = sunlight_at(
+        frame, fine_pages, fine, coarse_pages, coarse, soft, wanted, x, y, 0.0, 0.0, 0.0, 1.0, distance, pixel
+    )
     lit = tones[SUN, 2] * (1.0 - shadow * (1.0 - lit))
     wet = 0.0
     if wetness > 0.0 and material != _WATER:
@@ -314,10 +348,34 @@ def _ground(
 
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
 def _surface(
-    faces: Texels, stands: Floats, texels: Texels, starts: Ints, per_metre: Floats, size: int, tones: Floats,
-    clouds: Texels, haze_m: float, shadow: float, soft: bool, lamps: float, frame: Floats, fine_pages: Pages,
-    fine: Tiles, coarse_pages: Pages, coarse: Tiles, wanted: Codes, i: int, t: int, px: float, py: float, pz: float, distance: float, dx: float, dy: float,
-    dz: float, pixel: float,
+    faces: Texels,
+    stands: Floats,
+    texels: Texels,
+    starts: Ints,
+    per_metre: Floats,
+    size: int,
+    tones: Floats,
+    clouds: Texels,
+    haze_m: float,
+    shadow: float,
+    soft: bool,
+    lamps: float,
+    frame: Floats,
+    fine_pages: Pages,
+    fine: Tiles,
+    coarse_pages: Pages,
+    coarse: Tiles,
+    wanted: Codes,
+    i: int,
+    t: int,
+    px: float,
+    py: float,
+    pz: float,
+    distance: float,
+    dx: float,
+    dy: float,
+    dz: float,
+    pixel: float,
 ) -> Rgb:
     """The light from a point of a thing's triangle; (dx, dy, dz) is where the eye looks, of length 1."""
     sine, cosine = stands[i, 3], stands[i, 4]
@@ -360,28 +418,43 @@ def _surface(
         slant = 0.3 + 0.7 * slant
     lit = 0.0
     if slant > 0.0:
-        lit = sunlight_at(frame, fine_pages, fine, coarse_pages, coarse, soft, wanted, px, py, pz, nx, ny, nz, distance, pixel)
+        lit = sunlight_at(
+            frame, fine_pages, fine, coarse_pages, coarse, soft, wanted, px, py, pz, nx, ny, nz, distance, pixel
+        )
         lit = slant * (1.0 - shadow * (1.0 - lit))
     up = 0.5 + 0.5 * nz
     near_ground = 0.72 + 0.28 * min(1.0, pz / 1.2)  # less of the sky is seen close to the ground
     colour = (
-        red * (near_ground * (tones[BOUNCE, 0] + up * (tones[SKYLIGHT, 0] - tones[BOUNCE, 0])) + lit * tones[SUNLIGHT, 0]),
-        green * (near_ground * (tones[BOUNCE, 1] + up * (tones[SKYLIGHT, 1] - tones[BOUNCE, 1])) + lit * tones[SUNLIGHT, 1]),
-        blue * (near_ground * (tones[BOUNCE, 2] + up * (tones[SKYLIGHT, 2] - tones[BOUNCE, 2])) + lit * tones[SUNLIGHT, 2]),
+        red
+        * (near_ground * (tones[BOUNCE, 0] + up * (tones[SKYLIGHT, 0] - tones[BOUNCE, 0])) + lit * tones[SUNLIGHT, 0]),
+        green
+        * (near_ground * (tones[BOUNCE, 1] + up * (tones[SKYLIGHT, 1] - tones[BOUNCE, 1])) + lit * tones[SUNLIGHT, 1]),
+        blue
+        * (near_ground * (tones[BOUNCE, 2] + up * (tones[SKYLIGHT, 2] - tones[BOUNCE, 2])) + lit * tones[SUNLIGHT, 2]),
     )
     if material == _GLASS or material == _FACADE_GLASS or material == _WATER or material == _PAINT:
         graze = 1.0 - max(facing, 0.0)
         graze *= graze
         graze *= graze
         share = 0.03 + 0.4 * graze if material == _PAINT else 0.15 + 0.65 * graze
-        colour = _mirrored(tones, clouds, colour, share, dx + 2.0 * facing * nx, dy + 2.0 * facing * ny, dz + 2.0 * facing * nz)
+        colour = _mirrored(
+            tones, clouds, colour, share, dx + 2.0 * facing * nx, dy + 2.0 * facing * ny, dz + 2.0 * facing * nz
+        )
     return _hazed(tones, haze_m, colour, distance, dx, dy, dz)
 
 
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
 def shade(
-    surfaces: Surfaces, looks: GroundLooks, textures: Textures, light: Light, maps: ShadowMaps, view: Projection,
-    canvas: Canvas, curve: NDArray[np.uint8], wanted: NDArray[np.uint8], picture: NDArray[np.uint8],
+    surfaces: Surfaces,
+    looks: GroundLooks,
+    textures: Textures,
+    light: Light,
+    maps: ShadowMaps,
+    view: Projection,
+    canvas: Canvas,
+    curve: NDArray[np.uint8],
+    wanted: NDArray[np.uint8],
+    picture: NDArray[np.uint8],
 ) -> bool:
     """Set the picture, shape (height, width, 3); return whether all shadow tiles that it needs were there.
 
@@ -444,15 +517,66 @@ def shade(
                     pz = eye[2] + dz * distance
                     if owners[k] == GROUND:
                         colour = _ground(
-                            codes, corner, materials, colours, averages, layout, texels, starts, per_metre, size, tones,
-                            clouds, light.haze_m, light.shadow, light.soft, light.wetness, frame, fine_pages, fine,
-                            coarse_pages, coarse, wanted, px, py, distance, dx, dy, dz, pixel,
+                            codes,
+                            corner,
+                            materials,
+                            colours,
+                            averages,
+                            layout,
+                            texels,
+                            starts,
+                            per_metre,
+                            size,
+                            tones,
+                            clouds,
+                            light.haze_m,
+                            light.shadow,
+                            light.soft,
+                            light.wetness,
+                            frame,
+                            fine_pages,
+                            fine,
+                            coarse_pages,
+                            coarse,
+                            wanted,
+                            px,
+                            py,
+                            distance,
+                            dx,
+                            dy,
+                            dz,
+                            pixel,
                         )
                     else:
                         colour = _surface(
-                            faces, stands, texels, starts, per_metre, size, tones, clouds, light.haze_m, light.shadow,
-                            light.soft, light.lamps, frame, fine_pages, fine, coarse_pages, coarse, wanted, owners[k],
-                            triangles[k], px, py, pz, distance, dx, dy, dz, pixel,
+                            faces,
+                            stands,
+                            texels,
+                            starts,
+                            per_metre,
+                            size,
+                            tones,
+                            clouds,
+                            light.haze_m,
+                            light.shadow,
+                            light.soft,
+                            light.lamps,
+                            frame,
+                            fine_pages,
+                            fine,
+                            coarse_pages,
+                            coarse,
+                            wanted,
+                            owners[k],
+                            triangles[k],
+                            px,
+                            py,
+                            pz,
+                            distance,
+                            dx,
+                            dy,
+                            dz,
+                            pixel,
                         )
                 red += same * colour[0]
                 green += same * colour[1]

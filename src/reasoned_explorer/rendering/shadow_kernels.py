@@ -72,9 +72,21 @@ def _filtered(tiles: NDArray[np.uint16], page: int, u: float, v: float, height: 
 
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
 def sunlight_at(
-    frame: NDArray[np.float64], fine_pages: NDArray[np.int32], fine_tiles: NDArray[np.uint16],
-    coarse_pages: NDArray[np.int32], coarse_tiles: NDArray[np.uint16], soft: bool, wanted: NDArray[np.uint8], x: float,
-    y: float, z: float, nx: float, ny: float, nz: float, distance: float, pixel: float,
+    frame: NDArray[np.float64],
+    fine_pages: NDArray[np.int32],
+    fine_tiles: NDArray[np.uint16],
+    coarse_pages: NDArray[np.int32],
+    coarse_tiles: NDArray[np.uint16],
+    soft: bool,
+    wanted: NDArray[np.uint8],
+    x: float,
+    y: float,
+    z: float,
+    nx: float,
+    ny: float,
+    nz: float,
+    distance: float,
+    pixel: float,
 ) -> float:
     """The share of the sun's light that reaches a point, in [0, 1].
 
@@ -128,9 +140,7 @@ def sunlight_at(
 
 
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
-def _cast_triangle(
-    corners: NDArray[np.float64], a: int, b: int, c: int, tile: NDArray[np.uint16]
-) -> None:
+def _cast_triangle(corners: NDArray[np.float64], a: int, b: int, c: int, tile: NDArray[np.uint16]) -> None:
     """Raise a tile's heights by a triangle, half a texel wider than it is so that thin things have shadows too."""
     xa, ya, za = corners[a, 0], corners[a, 1], corners[a, 2]
     xb, yb, zb = corners[b, 0], corners[b, 1], corners[b, 2]
@@ -173,8 +183,16 @@ def _cast_triangle(
 
 @njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
 def cast(
-    library: Library, instances: Instances, footprints: NDArray[np.float64], shear: NDArray[np.float64], west: float,
-    south: float, texel: float, coarser: int, corners: NDArray[np.float64], tile: NDArray[np.uint16],
+    library: Library,
+    instances: Instances,
+    footprints: NDArray[np.float64],
+    shear: NDArray[np.float64],
+    west: float,
+    south: float,
+    texel: float,
+    coarser: int,
+    corners: NDArray[np.float64],
+    tile: NDArray[np.uint16],
 ) -> None:
     """Set a tile.
 

@@ -60,7 +60,9 @@ def _discs(builder: MeshBuilder) -> None:
         builder.sheet(STEEL, [(0, -0.75, 0), (0, 0.75, 0), (0.2, 0.5, 1.9), (0.1, -0.4, 2.2)])
         return
     builder.cylinder(GRANITE, (0, 0, 0), (0, 0, 0.12), 0.75, 0.72, sides=20)
-    builder.extrude(_RUST, [(-0.5, 0.1), (0.45, 0.1), (0.7, 1.2), (0.35, 2.0), (-0.3, 2.5), (-0.7, 1.3)], "y", -0.05, 0.05)
+    builder.extrude(
+        _RUST, [(-0.5, 0.1), (0.45, 0.1), (0.7, 1.2), (0.35, 2.0), (-0.3, 2.5), (-0.7, 1.3)], "y", -0.05, 0.05
+    )
     builder.extrude(STEEL, [(-0.6, 0.1), (0.6, 0.1), (0.72, 0.9), (0.2, 1.9), (-0.35, 1.4)], "x", -0.04, 0.04)
     builder.torus(BRASS, (0.1, 0.0, 1.6), 0.42, 0.06, (0.5, 1, 0.2), around=24, sides=8)
     if builder.detail <= 1:
@@ -88,7 +90,9 @@ def _pedestal(builder: MeshBuilder, stone: Surface, top: float) -> None:
         if builder.detail <= 1:
             near = Plane((0.0, plane.origin[1] * 1.015, 0.0), plane.right)
             for row in range(4):
-                builder.decal(BRASS, near.points(rectangle(0, middle + 0.19 - 0.12 * row, (0.7, 0.6, 0.66, 0.4)[row], 0.04)))
+                builder.decal(
+                    BRASS, near.points(rectangle(0, middle + 0.19 - 0.12 * row, (0.7, 0.6, 0.66, 0.4)[row], 0.04))
+                )
 
 
 def _rider(builder: MeshBuilder) -> None:
@@ -103,7 +107,12 @@ def _rider(builder: MeshBuilder) -> None:
     k, foot = 1.6, 3.2
     figure = MeshBuilder(detail=builder.detail)
     for side in (-1, 1):
-        figure.tube(metal, [(side * 0.1, 0.05 * side, 0), (side * 0.1, 0.04 * side, 0.45), (side * 0.07, 0, 0.9)], [0.08, 0.08, 0.11], sides=8)
+        figure.tube(
+            metal,
+            [(side * 0.1, 0.05 * side, 0), (side * 0.1, 0.04 * side, 0.45), (side * 0.07, 0, 0.9)],
+            [0.08, 0.08, 0.11],
+            sides=8,
+        )
         figure.box(metal, (side * 0.1 - 0.06, -0.1 + 0.05 * side, 0), (side * 0.1 + 0.06, 0.16 + 0.05 * side, 0.09))
     coat = [(0.26, 0.55), (0.2, 0.95), (0.19, 1.1), (0.24, 1.35), (0.2, 1.45), (0.07, 1.52)]
     figure.lathe(metal, coat, sides=14, stretch=(1.0, 0.7))
@@ -149,7 +158,12 @@ def _column(builder: MeshBuilder) -> None:
     builder.lathe(BRASS, [(0.2, 4.5), (0.22, 4.6), (0.12, 5.1), (0.15, 5.35), (0.05, 5.5)], sides=12)
     builder.sphere(BRASS, (0, 0.02, 5.6), 0.1, sides=10, rings=6)
     for side in (-1, 1):
-        wing = [(side * 0.05, -0.08, 5.1), (side * 0.55, -0.2, 5.5), (side * 0.6, -0.25, 5.95), (side * 0.08, -0.08, 5.45)]
+        wing = [
+            (side * 0.05, -0.08, 5.1),
+            (side * 0.55, -0.2, 5.5),
+            (side * 0.6, -0.25, 5.95),
+            (side * 0.08, -0.08, 5.45),
+        ]
         builder.sheet(BRASS, wing)
         builder.tube(BRASS, [(side * 0.12, 0, 5.35), (side * 0.2, 0.25, 5.5), (side * 0.1, 0.35, 5.8)], 0.04, sides=5)
     builder.torus(BRASS, (0, 0.36, 5.86), 0.12, 0.025, (0, 1, 0.3), around=14, sides=5)

@@ -112,7 +112,16 @@ def _recycling(builder: MeshBuilder, variant: int) -> None:
     order = ((0, 1, 2), (1, 0, 1))[variant]
     for place, kind in enumerate(order):
         surface, x = _CONTAINERS[kind], -0.8 + place * 1.6 / 3
-        outline = [(-0.6, 0.06), (0.6, 0.06), (0.6, 1.0), (0.42, 1.36), (0.2, 1.5), (-0.2, 1.5), (-0.42, 1.36), (-0.6, 1.0)]
+        outline = [
+            (-0.6, 0.06),
+            (0.6, 0.06),
+            (0.6, 1.0),
+            (0.42, 1.36),
+            (0.2, 1.5),
+            (-0.2, 1.5),
+            (-0.42, 1.36),
+            (-0.6, 1.0),
+        ]
         if builder.detail == FAR:
             # Only what is seen: the front, the roof and the back of each, and the two ends.
             faces = [[(-0.6, 0.0), (-0.5, 1.5)], [(-0.5, 1.5), (0.5, 1.5)], [(0.5, 1.5), (0.6, 0.0)]]
@@ -203,7 +212,9 @@ def _post_box_pillar(builder: MeshBuilder) -> None:
         builder.cylinder(_POST_RED, (0, 0, 0.15), (0, 0, 1.2), 0.23, sides=13)
         return
     builder.lathe(BLACK, [(0.23, 0.0), (0.23, 0.12), (0.2, 0.15)], sides=20)
-    builder.lathe(_POST_RED, [(0.205, 0.14), (0.205, 1.02), (0.245, 1.05), (0.25, 1.09), (0.18, 1.16), (0, 1.2)], sides=20)
+    builder.lathe(
+        _POST_RED, [(0.205, 0.14), (0.205, 1.02), (0.245, 1.05), (0.25, 1.09), (0.18, 1.16), (0, 1.2)], sides=20
+    )
     builder.box(BLACK, (-0.12, 0.15, 0.9), (0.12, 0.216, 0.94))
     builder.box(SIGN_WHITE, (-0.09, 0.15, 0.6), (0.09, 0.218, 0.8))
     if builder.detail <= 1:

@@ -106,7 +106,18 @@ _DOME = ((0.48, 2.16), (0.42, 2.23), (0.2, 2.29), (0.06, 2.3))
 def _handset(builder: MeshBuilder, plane: Plane) -> None:
     """The mark of a telephone: a receiver, white."""
     k, v = 0.2, 1.25
-    outline = [(-1, 0.4), (-0.6, 0.8), (0.6, 0.8), (1, 0.4), (0.9, 0.0), (0.5, 0.0), (0.4, 0.35), (-0.4, 0.35), (-0.5, 0), (-0.9, 0)]
+    outline = [
+        (-1, 0.4),
+        (-0.6, 0.8),
+        (0.6, 0.8),
+        (1, 0.4),
+        (0.9, 0.0),
+        (0.5, 0.0),
+        (0.4, 0.35),
+        (-0.4, 0.35),
+        (-0.5, 0),
+        (-0.9, 0),
+    ]
     builder.decal(SIGN_WHITE, _nearer(plane).points([(u * k, v + w * k) for u, w in reversed(outline)]))
     builder.decal(SIGN_WHITE, _nearer(plane).points(rectangle(0, v - 0.12, 0.24, 0.2)))
 
@@ -182,7 +193,9 @@ def _kiosk(builder: MeshBuilder, variant: int) -> None:
         _goods(builder, _nearer(front))
         for side in (1.41, -1.41):
             for place, colour in enumerate(_CANS[:4]):
-                builder.decal(plain(*colour), facing_side(side, y=-0.2).points(rectangle(-0.6 + 0.42 * place, 1.4, 0.34, 0.5)))
+                builder.decal(
+                    plain(*colour), facing_side(side, y=-0.2).points(rectangle(-0.6 + 0.42 * place, 1.4, 0.34, 0.5))
+                )
         builder.box(DARK_STEEL, (-1.2, 0.7, 0.2), (-0.3, 0.85, 0.85))
         for place in range(4):
             colour = plain(*_CANS[(place + 2) % 6])

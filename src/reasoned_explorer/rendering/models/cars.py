@@ -88,8 +88,18 @@ def _far(builder: MeshBuilder, body: _Body) -> None:
     builder.loft(PAINT.shaded(0.92), [low, top], smooth=False, capped=False)
     builder.decal(PAINT, top)
     side = PAINT.shaded(0.85) if body.closed_m > -1 else GLASS
-    base = [(-0.8, body.base[0], belt), (0.8, body.base[0], belt), (0.8, body.base[1], belt), (-0.8, body.base[1], belt)]
-    roof = [(-0.62, body.roof[0], 1.5), (0.62, body.roof[0], 1.5), (0.62, body.roof[1], 1.5), (-0.62, body.roof[1], 1.5)]
+    base = [
+        (-0.8, body.base[0], belt),
+        (0.8, body.base[0], belt),
+        (0.8, body.base[1], belt),
+        (-0.8, body.base[1], belt),
+    ]
+    roof = [
+        (-0.62, body.roof[0], 1.5),
+        (0.62, body.roof[0], 1.5),
+        (0.62, body.roof[1], 1.5),
+        (-0.62, body.roof[1], 1.5),
+    ]
     builder.loft(side, [base, roof], smooth=False, capped=False)
     builder.decal(PAINT, roof)
     for x in (-0.8, 0.8):
@@ -103,7 +113,9 @@ def _belt_at(body: _Body, y: float) -> float:
 
 def _lower(builder: MeshBuilder, body: _Body) -> None:
     """The body up to the windows: rounded sections from tail to nose."""
-    stations = body.belt if builder.detail <= 1 else (body.belt[0], body.belt[1], body.belt[4], body.belt[6], body.belt[7])
+    stations = (
+        body.belt if builder.detail <= 1 else (body.belt[0], body.belt[1], body.belt[4], body.belt[6], body.belt[7])
+    )
     rings = []
     for y, z in stations:
         end = abs(y) / 2.2
@@ -137,8 +149,14 @@ def _upper(builder: MeshBuilder, body: _Body) -> None:
         return [(-half, y0, z0), (half, y0, z0), (half, y1, z1), (-half, y1, z1)]
 
     builder.loft(GLASS, [ring(0.0), ring(1.0)], smooth=False)
-    roof = [[(x * k, (y - ym) * k + ym, z) for x, y, _ in ring(1.0, 0.03)] for k, z, ym in
-            ((1.0, eave - 0.02, sum(body.roof) / 2), (0.98, eave + 0.03, sum(body.roof) / 2), (0.8, crest, sum(body.roof) / 2))]
+    roof = [
+        [(x * k, (y - ym) * k + ym, z) for x, y, _ in ring(1.0, 0.03)]
+        for k, z, ym in (
+            (1.0, eave - 0.02, sum(body.roof) / 2),
+            (0.98, eave + 0.03, sum(body.roof) / 2),
+            (0.8, crest, sum(body.roof) / 2),
+        )
+    ]
     builder.loft(PAINT, roof if builder.detail <= 1 else [roof[0], roof[2]], smooth=builder.detail == 0)
     if body.closed_m > -3.0:
         _panels(builder, ring(0.0, 0.012), ring(1.0, 0.012), body)
@@ -186,7 +204,10 @@ def _panels(
 def _wheel(builder: MeshBuilder, side: int, y: float) -> None:
     """A tyre with a rim of five spokes, in a dark arch."""
     r = _WHEEL_M
-    arch = [(r * 1.2 * math.cos(a), r + r * 1.2 * math.sin(a)) for a in np.linspace(-0.35, math.pi + 0.35, builder.sides(13) + 2)]
+    arch = [
+        (r * 1.2 * math.cos(a), r + r * 1.2 * math.sin(a))
+        for a in np.linspace(-0.35, math.pi + 0.35, builder.sides(13) + 2)
+    ]
     plane = facing_side(side * 0.892, y=y)
     builder.decal(BLACK, plane.points(arch))
     builder.cylinder(RUBBER, (side * 0.69, y, r), (side * 0.9, y, r), r, sides=18)
@@ -206,7 +227,9 @@ def _ends(builder: MeshBuilder, body: _Body) -> None:
     nose, tail = body.belt[-2][1], body.belt[1][1]
     for side in (-1, 1):
         builder.box(_LAMP, _low(side * 0.62, 0.16, 2.0, nose - 0.16), _high(side * 0.62, 0.16, 2.17, nose - 0.03))
-        builder.box(SIGN_RED, _low(side * 0.66, 0.13, -2.185, tail - 0.28), _high(side * 0.66, 0.13, -2.05, tail - 0.06))
+        builder.box(
+            SIGN_RED, _low(side * 0.66, 0.13, -2.185, tail - 0.28), _high(side * 0.66, 0.13, -2.05, tail - 0.06)
+        )
     builder.box(_PLASTIC, (-0.42, 2.1, nose - 0.2), (0.42, 2.19, nose - 0.06))
     builder.box(_PLASTIC, (-0.76, 2.0, 0.26), (0.76, 2.2, 0.42), bevel=0.03)
     builder.box(_PLASTIC, (-0.76, -2.2, 0.28), (0.76, -2.0, 0.46), bevel=0.03)
@@ -227,7 +250,12 @@ def _trim(builder: MeshBuilder, body: _Body) -> None:
     front = body.base[1] - 0.35
     for side in (-1, 1):
         belt = _belt_at(body, front)
-        builder.box(PAINT, (side * 0.84 - 0.075, front - 0.08, belt - 0.02), (side * 0.84 + 0.06, front + 0.06, belt + 0.11), bevel=0.03)
+        builder.box(
+            PAINT,
+            (side * 0.84 - 0.075, front - 0.08, belt - 0.02),
+            (side * 0.84 + 0.06, front + 0.06, belt + 0.11),
+            bevel=0.03,
+        )
         plane = facing_side(side * 0.8875)
         direction = 1.0 if side > 0 else -1.0
         for y in (body.post, body.base[1] - 0.15, max(-1.25, body.base[0] + 0.5)):
@@ -235,7 +263,9 @@ def _trim(builder: MeshBuilder, body: _Body) -> None:
         if builder.detail == 0:
             for y in (body.post + 0.16, max(-1.05, body.base[0] + 0.7)):
                 height = _belt_at(body, y) - 0.2
-                builder.box(_PLASTIC, (side * 0.885 - 0.012, y - 0.09, height), (side * 0.885 + 0.012, y + 0.09, height + 0.03))
+                builder.box(
+                    _PLASTIC, (side * 0.885 - 0.012, y - 0.09, height), (side * 0.885 + 0.012, y + 0.09, height + 0.03)
+                )
 
 
 MAKERS = {"car": Maker(_car, variants=4, tints=_COLOURS)}

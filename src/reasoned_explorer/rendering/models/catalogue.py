@@ -5,7 +5,19 @@ from functools import lru_cache
 from reasoned_explorer.model import UnknownNameError
 from reasoned_explorer.rendering.mesh import Model
 from reasoned_explorer.rendering.mesh_builder import Colour
-from reasoned_explorer.rendering.models import art, bins, booths, cars, cycles, people, posts, seats, signs, trees, waterworks
+from reasoned_explorer.rendering.models import (
+    art,
+    bins,
+    booths,
+    cars,
+    cycles,
+    people,
+    posts,
+    seats,
+    signs,
+    trees,
+    waterworks,
+)
 from reasoned_explorer.rendering.models.maker import Maker
 from reasoned_explorer.world.taxonomy import OBJECT_CLASSES
 

@@ -62,7 +62,9 @@ def add_bicycle(builder: MeshBuilder, frame: Surface, *, low_step: bool = False,
         builder.cylinder(DARK_STEEL, (0.02, -0.1, 0.28), (0.045, -0.1, 0.28), 0.1, sides=12)
         for side in (-1, 1):
             builder.beam(RUBBER, (side * 0.25, 0.16, 1.085), (side * 0.25, 0.26, 1.08), 0.03, 0.03)
-            builder.beam(BLACK, (side * 0.03, -0.1 + side * 0.14, 0.28), (side * 0.14, -0.1 + side * 0.14, 0.28), 0.09, 0.025)
+            builder.beam(
+                BLACK, (side * 0.03, -0.1 + side * 0.14, 0.28), (side * 0.14, -0.1 + side * 0.14, 0.28), 0.09, 0.025
+            )
             builder.beam(DARK_STEEL, (side * 0.05, -0.1, 0.28), (side * 0.05, -0.1 + side * 0.14, 0.28), 0.025, 0.025)
     if builder.detail == 0:
         for y, start, end in ((_REAR_Y, 1.2, 3.6), (_FRONT_Y, 0.5, 2.2)):
@@ -87,7 +89,9 @@ def _wheel(builder: MeshBuilder, y: float) -> None:
         builder.cylinder(CHROME, (-0.04, y, r), (0.04, y, r), 0.03, sides=6)
         for turn in range(7 if builder.detail == 0 else 4):
             angle = math.pi * (turn + 0.5) / (7 if builder.detail == 0 else 4)
-            ends = np.array([[y + k * (r - 0.03) * math.cos(angle), r + k * (r - 0.03) * math.sin(angle)] for k in (-1, 1)])
+            ends = np.array(
+                [[y + k * (r - 0.03) * math.cos(angle), r + k * (r - 0.03) * math.sin(angle)] for k in (-1, 1)]
+            )
             side = 0.005 * np.array([-math.sin(angle), math.cos(angle)])
             corners = [ends[0] - side, ends[1] - side, ends[1] + side, ends[0] + side]
             builder.sheet(STEEL, [(0.0, *corner) for corner in corners])
@@ -170,7 +174,9 @@ def _bicycle_rental(builder: MeshBuilder, variant: int) -> None:
     else:
         _far_bicycle(bicycle, livery)
     for place, x in enumerate(docks.tolist()):
-        builder.box(livery if builder.detail < 2 else DARK_STEEL, (x - 0.09, -0.95, 0.03), (x + 0.09, -0.72, 0.8), bevel=0.03)
+        builder.box(
+            livery if builder.detail < 2 else DARK_STEEL, (x - 0.09, -0.95, 0.03), (x + 0.09, -0.72, 0.8), bevel=0.03
+        )
         if place not in (2, 4):
             builder.add(bicycle, (x, 0.05, 0), heading_rad=math.pi)
     _terminal(builder, -3.55, livery)

@@ -187,7 +187,9 @@ def _frames(normals: FloatArray) -> tuple[FloatArray, FloatArray]:
 def _icosahedron() -> tuple[FloatArray, NDArray[np.int64]]:
     golden = (1.0 + math.sqrt(5.0)) / 2.0
     pairs = [(a, golden * b) for a in (-1.0, 1.0) for b in (-1.0, 1.0)]
-    corners = _unit(np.array([(0.0, a, b) for a, b in pairs] + [(a, b, 0.0) for a, b in pairs] + [(b, 0.0, a) for a, b in pairs]))
+    corners = _unit(
+        np.array([(0.0, a, b) for a, b in pairs] + [(a, b, 0.0) for a, b in pairs] + [(b, 0.0, a) for a, b in pairs])
+    )
     return corners, _hull(corners, 1.1)
 
 

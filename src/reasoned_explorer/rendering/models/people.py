@@ -110,7 +110,9 @@ def _legs(builder: MeshBuilder, who: _Person, stride: float) -> None:
         builder.tube(lower, [ankle, knee, top], [0.052, 0.066, 0.092], sides=sides)
         if builder.detail <= 1:
             toe = (0, 0.13, -0.02) if not back else (0, 0.1, -0.08)
-            builder.beam(shoe, ankle + np.array([0, -0.06, -0.045]), ankle + np.array(toe) - np.array([0, 0, 0.025]), 0.09, 0.09)
+            builder.beam(
+                shoe, ankle + np.array([0, -0.06, -0.045]), ankle + np.array(toe) - np.array([0, 0, 0.025]), 0.09, 0.09
+            )
         else:
             builder.box(shoe, (x - 0.05, y - 0.08, 0), (x + 0.05, y + 0.14, 0.1))
     if who.skirt:
@@ -125,7 +127,15 @@ def _trunk(builder: MeshBuilder, who: _Person) -> None:
         "woman": (0.138, 0.172, 0.178, 0.176),
         "child": (0.15, 0.158, 0.165, 0.155),
     }[who.build]
-    profile = [(hips, 0.86), (hips * 0.99, 0.95), (waist, 1.08), (chest, 1.27), (shoulder, 1.38), (0.12, 1.47), (0.055, 1.5)]
+    profile = [
+        (hips, 0.86),
+        (hips * 0.99, 0.95),
+        (waist, 1.08),
+        (chest, 1.27),
+        (shoulder, 1.38),
+        (0.12, 1.47),
+        (0.055, 1.5),
+    ]
     if builder.detail == 2:
         profile = profile[::2]
     builder.lathe(PAINT, profile, sides=14, stretch=(1.0, 0.62))
@@ -160,8 +170,10 @@ def _head(builder: MeshBuilder, who: _Person) -> None:
     builder.sphere(skin, (0, 0.025, 1.62), (0.075 * big, 0.092 * big, 0.112), sides=12, rings=8)
     builder.sphere(hair, (0, -0.005, 1.66), (0.086 * big, 0.1 * big, 0.09), sides=12, rings=6)
     if who.long_hair:
-        fall = [[(x * w, y, z) for x, y in ((-1, 0.01), (-1, -0.07), (0, -0.11), (1, -0.07), (1, 0.01))] for w, z in
-                ((0.085, 1.66), (0.092, 1.55), (0.08, 1.42))]
+        fall = [
+            [(x * w, y, z) for x, y in ((-1, 0.01), (-1, -0.07), (0, -0.11), (1, -0.07), (1, 0.01))]
+            for w, z in ((0.085, 1.66), (0.092, 1.55), (0.08, 1.42))
+        ]
         builder.loft(hair, fall)
     if builder.detail == 0:
         builder.box(skin.shaded(0.93), (-0.012, 0.105, 1.6), (0.012, 0.135, 1.635))

@@ -102,7 +102,9 @@ def _bollard(builder: MeshBuilder, variant: int) -> None:
         return
     builder.lathe(body, [(0.1, 0.0), (0.1, 0.08), (0.075, 0.12), (0.072, 0.56)], sides=14)
     builder.lathe(band, [(0.073, 0.56), (0.073, 0.72)], sides=14)
-    builder.lathe(body, [(0.072, 0.72), (0.072, 0.78), (0.095, 0.8), (0.085, 0.86), (0.045, 0.892), (0.0, 0.9)], sides=14)
+    builder.lathe(
+        body, [(0.072, 0.72), (0.072, 0.78), (0.095, 0.8), (0.085, 0.86), (0.045, 0.892), (0.0, 0.9)], sides=14
+    )
     if variant == 1:
         builder.lathe(band, [(0.075, 0.24), (0.075, 0.4)], sides=14)
 

@@ -62,7 +62,9 @@ def _picnic_table(builder: MeshBuilder, variant: int) -> None:
         builder.box(wood, (-0.9, -0.37, 0.66), (0.9, 0.37, 0.75))
         for side in (-1, 1):
             y = 0.6 * side
-            builder.sheet(wood, [(-0.9, y - 0.15, 0.44), (0.9, y - 0.15, 0.44), (0.9, y + 0.15, 0.44), (-0.9, y + 0.15, 0.44)])
+            builder.sheet(
+                wood, [(-0.9, y - 0.15, 0.44), (0.9, y - 0.15, 0.44), (0.9, y + 0.15, 0.44), (-0.9, y + 0.15, 0.44)]
+            )
             x = 0.62 * side
             builder.sheet(wood, [(x, -0.7, 0), (x, 0.7, 0), (x, 0.25, 0.7)])
         return

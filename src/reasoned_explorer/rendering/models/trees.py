@@ -7,7 +7,15 @@ import numpy as np
 
 from reasoned_explorer.model.draws import key_of
 from reasoned_explorer.rendering.mesh_builder import FAR, MeshBuilder, Surface
-from reasoned_explorer.rendering.models.foliage import Crown, FloatArray, add_cores, add_far_crown, add_leaves, add_tufts, crown_of
+from reasoned_explorer.rendering.models.foliage import (
+    Crown,
+    FloatArray,
+    add_cores,
+    add_far_crown,
+    add_leaves,
+    add_tufts,
+    crown_of,
+)
 from reasoned_explorer.rendering.models.maker import Maker
 from reasoned_explorer.rendering.models.palette import BARK, CONCRETE, DARK_WOOD, LEAVES, SOIL, plain
 
@@ -189,8 +197,15 @@ def _pine(builder: MeshBuilder) -> None:
     """A tall bare stem of reddish bark with flat clouds of needles at its top."""
     rng = _rng("pine")
     clouds = np.array(
-        [(-1.5, 0.4, 5.6, 1.0), (1.4, -0.7, 6.0, 1.05), (0.3, 1.5, 6.5, 1.0), (-0.6, -1.4, 6.9, 1.0),
-         (1.1, 0.8, 7.5, 0.95), (-0.9, 0.5, 7.8, 0.9), (0.1, -0.3, 8.35, 0.85)]
+        [
+            (-1.5, 0.4, 5.6, 1.0),
+            (1.4, -0.7, 6.0, 1.05),
+            (0.3, 1.5, 6.5, 1.0),
+            (-0.6, -1.4, 6.9, 1.0),
+            (1.1, 0.8, 7.5, 0.95),
+            (-0.9, 0.5, 7.8, 0.9),
+            (0.1, -0.3, 8.35, 0.85),
+        ]
     )
     crown = Crown(clouds[:, :3], clouds[:, 3], np.array([0, 0, 6.6]), np.array([2.7, 2.7, 2.4]))
     if builder.detail == FAR:
@@ -198,12 +213,19 @@ def _pine(builder: MeshBuilder) -> None:
         add_far_crown(builder, _PINE.shaded(0.75), [(0, 4.8), (2.4, 5.8), (1.5, 7.6), (0.0, 9.0)])
         return
     stem = [(0, 0, 0), (0.08, 0, 2.5), (-0.05, 0.1, 5.0), (0.05, 0, 8.2)]
-    builder.tube(_PINE_BARK, stem[:: 1 if builder.detail == 0 else 3], [0.24, 0.18, 0.15, 0.05][:: 1 if builder.detail == 0 else 3], sides=8)
+    builder.tube(
+        _PINE_BARK,
+        stem[:: 1 if builder.detail == 0 else 3],
+        [0.24, 0.18, 0.15, 0.05][:: 1 if builder.detail == 0 else 3],
+        sides=8,
+    )
     for cloud in clouds if builder.detail < 2 else ():
         builder.tube(_PINE_BARK, [(0, 0, cloud[2] - 0.9), cloud[:3] * np.array([0.8, 0.8, 1.0])], 0.06, sides=4)
     flat = MeshBuilder(detail=builder.detail)
     squashed = Crown(
-        crown.centres * np.array([1, 1, 1 / 0.55]), crown.radii, crown.middle * np.array([1, 1, 1 / 0.55]),
+        crown.centres * np.array([1, 1, 1 / 0.55]),
+        crown.radii,
+        crown.middle * np.array([1, 1, 1 / 0.55]),
         crown.reach * np.array([1, 1, 1 / 0.55]),
     )
     add_cores(flat, _PINE, squashed, rng, fine=builder.detail == 0)
@@ -225,7 +247,9 @@ def _shrub(builder: MeshBuilder, variant: int) -> None:
     add_tufts(builder, (_LIME, _OAK, _LIME)[variant], crown, rng, count=count, size_m=size)
     if variant == 2:
         bloom = plain(0.92, 0.55, 0.72)
-        add_tufts(builder, bloom, crown, rng, count=(50, 22, 8)[builder.detail], size_m=(0.07, 0.1, 0.16)[builder.detail])
+        add_tufts(
+            builder, bloom, crown, rng, count=(50, 22, 8)[builder.detail], size_m=(0.07, 0.1, 0.16)[builder.detail]
+        )
 
 
 _BLOOMS = (plain(0.90, 0.12, 0.20), plain(0.98, 0.80, 0.15), plain(0.95, 0.92, 0.94), plain(0.72, 0.25, 0.65))

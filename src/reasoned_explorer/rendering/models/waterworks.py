@@ -114,9 +114,7 @@ def _statue_column(builder: MeshBuilder, stone: Surface) -> None:
     builder.sphere(BRONZE, (0, 0, 2.25), 0.25, sides=14, rings=8)
 
 
-def _jet(
-    builder: MeshBuilder, angle: float, *, start: tuple[float, float], peak: float, end: float
-) -> None:
+def _jet(builder: MeshBuilder, angle: float, *, start: tuple[float, float], peak: float, end: float) -> None:
     """Water that leaps outward in an arc into the basin."""
     share = np.linspace(0.0, 1.0, (7, 5, 4)[builder.detail])
     reach = start[0] + (end - start[0]) * share
