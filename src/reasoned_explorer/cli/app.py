@@ -9,7 +9,7 @@ from reasoned_explorer import __version__
 from reasoned_explorer.cli.answers import answering
 from reasoned_explorer.cli.bench_app import add_commands
 from reasoned_explorer.cli.minds_app import minds_app
-from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices
+from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices, Yes
 from reasoned_explorer.cli.worlds_app import worlds_app
 
 app = typer.Typer(
@@ -100,6 +100,10 @@ def run(
     looks: Annotated[int, typer.Option(help="Looks that must agree before the goal is declared found.")] = 2,
     radius: Annotated[float, typer.Option(help="Success radius R of the judge, metres.")] = 15.0,
     out: Annotated[Path | None, typer.Option(help="Folder for record and map; runs/… by default.")] = None,
+    images: Annotated[bool, typer.Option("--images/--no-images", help="Keep the pictures of all views, PNG.")] = False,
+    picture_px: Annotated[int, typer.Option(help="Side of a picture, pixels.")] = 448,
+    conditions: Annotated[str, typer.Option(help="In pictures: clear, overcast, dusk, fog or rain.")] = "clear",
+    yes: Yes = False,
     map_: Annotated[bool, typer.Option("--map/--no-map", help="Draw the map picture.")] = True,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the summary.")] = False,
 ) -> None:
@@ -135,6 +139,9 @@ def run(
             radius_m=radius,
             out=out,
             draw=map_,
+            images=images,
+            picture_px=picture_px,
+            conditions=conditions,
             quiet=quiet,
             models=ModelOptions(
                 base_url=base_url,
@@ -146,6 +153,7 @@ def run(
                 cache=cache,
                 budget_usd=budget_usd,
                 budget_minutes=budget_minutes,
+                yes=yes,
             ),
         )
     )

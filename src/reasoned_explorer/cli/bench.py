@@ -81,6 +81,8 @@ class BenchOptions:
     evaluator: str | None = None
     checker: str | None = None
     captioner: str = "noisy"
+    picture_px: int = 448
+    conditions: str = "clear"
     vehicle: str = "drone"
     latency: str = "gpt-2023"
     clock: str | None = None
@@ -272,6 +274,8 @@ def _plan(options: BenchOptions, names: Sequence[str], wrong: Sequence[InputErro
         evaluator=options.evaluator,
         checker=options.checker,
         captioner=options.captioner,
+        picture_px=options.picture_px,
+        conditions=options.conditions,
         latency=options.latency,
         explorer=explorer,
         success_radius_m=options.radius_m,

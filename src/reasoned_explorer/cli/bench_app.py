@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from reasoned_explorer.cli.answers import answering
-from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices
+from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices, Yes
 from reasoned_explorer.model import Fault, SettingsError
 
 ablate_app = typer.Typer(
@@ -28,7 +28,7 @@ Run = Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a run of
 
 _BESIDE_RESUME = (
     *("add", "workers", "ray", "base_url", "key_variable", "prices", "cache", "budget_usd", "budget_minutes"),
-    *("quiet", "resume"),
+    *("yes", "quiet", "resume"),
 )
 _BESIDE_RESUME_SAID = ", ".join(f"--{name.replace('_', '-')}" for name in _BESIDE_RESUME[:-1]) + " only"
 
@@ -103,6 +103,9 @@ def bench(
     evaluator: Annotated[str | None, typer.Option(help="Who scores, if not --minds.")] = None,
     checker: Annotated[str | None, typer.Option(help="Who notices the goal, if not --minds.")] = None,
     captioner: Annotated[str, typer.Option(help="Who says what is seen; see rex names.")] = "noisy",
+    picture_px: Annotated[int, typer.Option(help="Side of the pictures that a model is shown, pixels.")] = 448,
+    conditions: Annotated[str, typer.Option(help="In pictures: clear, overcast, dusk, fog or rain.")] = "clear",
+    yes: Yes = False,
     vehicle: Annotated[str, typer.Option(help="Vehicle profiles with commas; each has a table of its own.")] = "drone",
     latency: Annotated[str, typer.Option(help="How long modelled calls take; see rex names.")] = "gpt-2023",
     clock: Annotated[
@@ -156,6 +159,8 @@ def bench(
             evaluator=evaluator,
             checker=checker,
             captioner=captioner,
+            picture_px=picture_px,
+            conditions=conditions,
             vehicle=vehicle,
             latency=latency,
             clock=clock,
@@ -175,6 +180,7 @@ def bench(
                 cache=cache,
                 budget_usd=budget_usd,
                 budget_minutes=budget_minutes,
+                yes=yes,
             ),
         )
     )

@@ -19,6 +19,7 @@ from reasoned_explorer.evaluation.model_access import (
 from reasoned_explorer.evaluation.model_desk import KnownModel, ModelDesk
 from reasoned_explorer.model import RecordError
 from reasoned_explorer.model.disk import disk_error
+from reasoned_explorer.task.split import GENERATED
 
 #: In the folder of a run: what its workers spend in a sitting, and tapes of missions that are under way.
 SPENT_NAME, UNDER_WAY_NAME = "spent.txt", "under-way"
@@ -31,10 +32,12 @@ class ReadyModels:
     Attributes:
         base_url: Where those of ``openai:…`` are, or None.
         known: Each with what it can do.
+        pictures_may_leave: Whether pictures of real places may be sent to other machines.
     """
 
     base_url: str | None
     known: tuple[KnownModel, ...]
+    pictures_may_leave: bool = False
 
     def access(self, store: RunStore, options: ModelOptions, *, workers: int, here: bool) -> ModelAccess:
         """Return how workers reach them; what the run has to remember is put into its store.
@@ -71,6 +74,7 @@ class ReadyModels:
             spent=spent if options.budget_usd is not None else None,
             workers=workers,
             tapes=tapes if here else None,
+            pictures_may_leave=self.pictures_may_leave,
         ).knowing(abilities)
 
 
@@ -84,6 +88,7 @@ def models_ready(options: ModelOptions, plan: BenchPlan, kept: Mapping[str, Any]
 
     Raises:
         InputError: If a name, an address or a key is wrong, or a price that a budget needs is not known.
+        SettingsError: If pictures of real places would be sent away and a person does not agree.
         PartError: If a model does not answer.
         MissingDependencyError: If it needs what is not installed.
     """
@@ -98,4 +103,6 @@ def models_ready(options: ModelOptions, plan: BenchPlan, kept: Mapping[str, Any]
         budget=budget,
         abilities=abilities_from_json(kept.get("abilities", {})),
     )
-    return ReadyModels(base_url, desk.prepare(plan.models))
+    known = desk.prepare(plan.models)
+    real = [place.name for place in plan.split.places if place.city != GENERATED]
+    return ReadyModels(base_url, known, options.agree(desk, plan.base.captioner, real))

@@ -17,3 +17,4 @@ Prices = Annotated[
     Path | None,
     typer.Option(help="TOML file of what models cost, in the form of calls/prices.toml; goes before that."),
 ]
+Yes = Annotated[bool, typer.Option("--yes", help="Pictures of real places may be sent to a model on another machine.")]

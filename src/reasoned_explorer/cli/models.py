@@ -9,9 +9,11 @@ from typing import Any
 
 from reasoned_explorer.calls.budget import Budget, faults_of_budget
 from reasoned_explorer.calls.cache import AnswerCache
+from reasoned_explorer.calls.chat import is_model_name
 from reasoned_explorer.calls.prices import read_prices
 from reasoned_explorer.calls.tape import TapePlayer
 from reasoned_explorer.cli.answers import complain
+from reasoned_explorer.cli.consent import agree_to_send
 from reasoned_explorer.evaluation.mission import Mission
 from reasoned_explorer.evaluation.mission_settings import MissionSettings, models_of
 from reasoned_explorer.evaluation.model_desk import ModelDesk, recording_faults
@@ -89,6 +91,27 @@ class ModelOptions:
         if not models_of(settings) or self.replay is not None:
             return None
         return self.resume or self.record or folder / TAPE_NAME
+
+    def agree(self, desk: ModelDesk, captioner: str, places: Sequence[str]) -> bool:
+        """Return whether pictures may leave this machine; where they would, a person is asked once.
+
+        Args:
+            desk: Knows where the captioner is.
+            captioner: Name of the captioner.
+            places: The real places that pictures would be of.
+
+        Raises:
+            SettingsError: If a person does not agree, or cannot be asked.
+            InputError, PartError: As `ModelDesk.prepare`.
+        """
+        if not is_model_name(captioner) or not places or self.replay is not None:
+            return False
+        (known,) = desk.prepare([captioner])
+        if known.model.is_local:
+            return False
+        agree_to_send(known.model.fingerprint, places, yes=self.yes)
+        desk.pictures_may_leave = True
+        return True
 
     def say_how_to_go_on(self, desk: ModelDesk, folder: Path) -> None:
         """Say how a mission goes on that the budget has ended; nothing where it has not."""

@@ -30,6 +30,7 @@ class ModelAccess:
         workers: How many there are.
         tapes: Folder of the tapes of missions that are under way, so that one that was broken off goes on without
             paying twice; None for none.
+        pictures_may_leave: Whether pictures of real places may be sent to other machines.
         abilities: What models were found to be able to, by name: every worker asks in the same way.
     """
 
@@ -43,6 +44,7 @@ class ModelAccess:
     spent: Path | None = None
     workers: int = 1
     tapes: Path | None = None
+    pictures_may_leave: bool = False
     abilities: tuple[tuple[str, Abilities], ...] = ()
 
     @property
@@ -72,6 +74,7 @@ class ModelAccess:
             cache=None if self.cache is None else AnswerCache(self.cache),
             budget=budget,
             abilities=dict(self.abilities),
+            pictures_may_leave=self.pictures_may_leave,
         )
 
     def tape_of(self, key: tuple[str, ...]) -> Path | None:

@@ -21,6 +21,7 @@ from reasoned_explorer.calls.tape import TapePlayer, TapeRecorder
 from reasoned_explorer.clock import Clock, run_live
 from reasoned_explorer.model import Fault, PartError, RecordError, SettingsError
 from reasoned_explorer.model.checks import is_there
+from reasoned_explorer.perception.prompted import PromptedCaptioner, captioner_for
 
 #: Of models on this machine.
 LOCAL_PREFIX = "hf:"
@@ -51,8 +52,8 @@ class KnownModel:
 class _Taped:
     """Stands for the model whose answers are on a tape; there is nobody to ask."""
 
-    def __init__(self, name: str, fingerprint: str) -> None:
-        self.name, self.fingerprint, self.is_local = name, fingerprint, True
+    def __init__(self, name: str, fingerprint: str, family: str) -> None:
+        self.name, self.fingerprint, self.is_local, self.family = name, fingerprint, True, family
 
     async def ask(self, request: ChatRequest) -> ChatAnswer:  # noqa: ARG002 - the protocol's
         """Answer with a fault: whatever is not on the tape is not known."""
@@ -72,6 +73,7 @@ class ModelDesk:
         past: The tape of a mission that ended early and is gone on with: what was answered then is not asked again.
         asking: How endpoints are asked.
         abilities: What models are known to be able to; they are not tried again.
+        pictures_may_leave: Whether pictures of real places may be sent to other machines: a person has said so.
     """
 
     def __init__(
@@ -86,7 +88,9 @@ class ModelDesk:
         past: TapePlayer | None = None,
         asking: AskingSettings | None = None,
         abilities: Mapping[str, Abilities] | None = None,
+        pictures_may_leave: bool = False,
     ) -> None:
+        self.pictures_may_leave = pictures_may_leave
         self._key_variable, self._prices = key_variable, prices
         self._base_url, self._cache, self._budget, self._player = base_url, cache, budget, replay
         self._recorder: TapeRecorder | None = None
@@ -157,6 +161,25 @@ class ModelDesk:
         self._callers.add(caller)
         return caller
 
+    def captioner(self, name: str, caller: Caller, *, seed: int, place: str | None) -> PromptedCaptioner:
+        """Return the captioner that shows pictures to a model.
+
+        Args:
+            name: Of the model, which is ready.
+            caller: Of it.
+            seed: Of the mission.
+            place: The real place that the pictures are of, or None for one that is nowhere on earth.
+
+        Raises:
+            SettingsError: If the model reads no pictures, or they would leave this machine and may not.
+        """
+        model = self._known[name].model
+        if place is not None and not model.is_local and not self.pictures_may_leave:
+            what = f"pictures of {place} would be sent to another machine, for {name}"
+            remedy = "say --yes, or ModelDesk(pictures_may_leave=True)"
+            raise SettingsError("captioner", [Fault(what, "a person's consent", remedy)])
+        return captioner_for(model, caller, seed=seed)
+
     def abilities(self, name: str) -> Abilities:
         """Return what a model that is ready can do."""
         return self._known[name].abilities
@@ -172,7 +195,11 @@ class ModelDesk:
             RecordError: If there is such a file, or it cannot be made.
         """
         models = {
-            name: {"fingerprint": known.model.fingerprint, "abilities": asdict(known.abilities)}
+            name: {
+                "fingerprint": known.model.fingerprint,
+                "abilities": asdict(known.abilities),
+                "family": getattr(known.model, "family", ""),
+            }
             for name, known in self._known.items()
         }
         return self._record_to(TapeRecorder(path, about={"mission": dict(mission), "models": models}))
@@ -284,7 +311,9 @@ def _most_at_once(abilities: Abilities) -> int | None:
 def _taped(name: str, player: TapePlayer) -> KnownModel:
     about = player.about.get("models", {}).get(name)
     try:
-        return KnownModel(_Taped(name, about["fingerprint"]), _abilities_of(about), priced=True)
+        return KnownModel(
+            _Taped(name, about["fingerprint"], about.get("family", "")), _abilities_of(about), priced=True
+        )
     except (TypeError, KeyError) as error:
         held = ", ".join(player.about.get("models", {})) or "none"
         fault = Fault(f"no calls of {name} on the tape", f"one of those on it: {held}")
