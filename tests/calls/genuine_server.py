@@ -13,7 +13,17 @@ INSTALL = "pip install 'reasoned-explorer[local,served]' (see docs/models.md for
 #: What it takes beside torch and transformers themselves.
 PACKAGES = ("openai", "aiohttp", "torch", "transformers", "fastapi", "uvicorn", "accelerate")
 
-_START = "from transformers.cli.transformers import main; main()"
+# Its own command line, and a thread that ends it where whoever started it is gone without a goodbye.
+_START = """
+import os, threading, time
+def follow(parent):
+    while os.getppid() == parent:
+        time.sleep(1.0)
+    os._exit(1)
+threading.Thread(target=follow, args=(os.getppid(),), daemon=True).start()
+from transformers.cli.transformers import main
+main()
+"""
 _WITHIN_S, _GOODBYE_S = 120.0, 10.0
 _READY = re.compile(r"Uvicorn running on (http://127\.0\.0\.1:\d+)")
 
