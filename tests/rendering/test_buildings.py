@@ -1,10 +1,12 @@
-"""Buildings stand on their footprints, reach their heights, have whole windows, doors where they are entered, a roof."""
+"""Buildings stand on their footprints and reach their heights; windows are whole, doors are where one goes in."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from reasoned_explorer.rendering.buildings import mesh_of_building, models_of_buildings
@@ -190,6 +192,22 @@ def test_any_height_will_do(kind: str, height_m: float) -> None:
     mesh = mesh_of_building(Building(outer=box(0, 0, 9, 6), height_m=height_m, kind=kind), seed=4).levels[0]
     assert height_m - 0.01 <= mesh.vertices[:, 2].max() <= height_m + 2.5
     assert mesh.vertices[:, 2].min() >= -1e-6
+
+
+@settings(deadline=None, max_examples=80)
+@given(
+    st.lists(st.tuples(st.integers(-30, 30), st.integers(-30, 30)), min_size=0, max_size=14),
+    st.sampled_from(["house", "yes", "church", "roof", "office", "apartments"]),
+    st.integers(0, 9),
+)
+def test_any_ring_at_all_makes_a_sound_mesh(ring: list[tuple[int, int]], kind: str, seed: int) -> None:
+    """Rings that cross themselves, turn back or have no area come from maps, too."""
+    outer = np.array(ring, dtype=np.float64).reshape(-1, 2)
+    for mesh in mesh_of_building(Building(outer=outer, height_m=12.0, kind=kind), seed=seed).levels:
+        assert np.isfinite(mesh.vertices).all()
+        assert np.isfinite(mesh.uvs).all()
+        np.testing.assert_allclose(np.linalg.norm(mesh.normals, axis=2), 1.0, atol=1e-5)
+        assert len(mesh.vertices) == 0 or np.abs(mesh.vertices[:, :2]).max() < 100.0
 
 
 def test_a_building_looks_the_same_alone_and_among_others_in_any_order() -> None:

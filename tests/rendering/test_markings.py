@@ -14,6 +14,7 @@ from reasoned_explorer.rendering.markings import (
     parking_bays,
     pitches,
     rails,
+    stairs,
     stop_lines,
     zebras,
 )
@@ -41,9 +42,8 @@ def middles_of(patches: list[Patch]) -> Floats:
 
 
 def lanes_of(world: World) -> Floats:
-    roads = list(world.ways)
-    return middles_of(lane_lines([way for way in roads if way.ground == Ground.ROAD],
-                                 clearings_of([way for way in roads if way.ground == Ground.ROAD], crossings_of(world))))  # fmt: skip
+    roads = [way for way in world.ways if way.ground == Ground.ROAD]
+    return middles_of(lane_lines(roads, clearings_of(roads, crossings_of(world))))
 
 
 def test_dashes_run_along_the_middle_of_a_wide_road_only() -> None:
@@ -110,6 +110,14 @@ def test_pitches_and_railways_have_their_lines() -> None:
     assert len(pitches(world).corners) > 40
     steel = [part for part in rails(world.ways) if part.materials[0] == Material.METAL]
     assert sorted({round(float(y), 4) for y in middles_of(steel)[:, 1]}) == [79.2825, 80.7175]
+
+
+def test_stairs_have_steps_across() -> None:
+    flight = Way("steps", Ground.STEPS, np.array([(10.0, 10.0), (10.0, 19.0)]), 3.0)
+    edges = stairs((flight, road((0, 50), (100, 50)))).corners
+    assert len(edges) == 20
+    np.testing.assert_allclose(np.ptp(edges[..., 0], axis=1), 3.0)
+    np.testing.assert_allclose(np.diff(np.sort(edges[..., 1].mean(axis=1))), 0.45)
 
 
 def test_everything_is_low_faces_up_and_comes_in_squares() -> None:

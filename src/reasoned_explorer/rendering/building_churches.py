@@ -16,7 +16,7 @@ _DARK_GLASS, _LOUVRES, _COPPER = (
     np.array((0.35, 0.47, 0.42)),
 )
 #: Of a tower's height, where its spire begins.
-_SHAFT = 0.8
+_SHAFT = 0.7
 _WIDTHS_M = (3.2, 8.0)
 
 

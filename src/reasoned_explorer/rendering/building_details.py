@@ -73,7 +73,7 @@ def balconies(prints: Footprints, styles: Styles, roofs: Roofs) -> list[Patch]:
 
 
 def _balcony_faces(spots: Spots, floor: Floats, colours: Floats) -> list[Patch]:
-    """Return the parapet from outside, the floor and the underside of balconies."""
+    """Return the parapet, a sheet with two sides, the floor and the underside of balconies."""
     wide, deep = _BALCONY_M
     left, right = (spots.moved(aside_m=side * wide / 2.0).places for side in (-1.0, 1.0))
     far_left, far_right = left + deep * spots.out, right + deep * spots.out
@@ -83,9 +83,11 @@ def _balcony_faces(spots: Spots, floor: Floats, colours: Floats) -> list[Patch]:
         return quads(lifted(one, low), lifted(other, low), lifted(other, high), lifted(one, high))
 
     faces = [
-        (upright(far_left, far_right), wide, 1.14),
-        (upright(left, far_left), deep, 1.14),
-        (upright(far_right, right), deep, 1.14),
+        *(
+            (upright(*ends), length, 1.14)
+            for one, other, length in ((far_left, far_right, wide), (left, far_left, deep), (far_right, right, deep))
+            for ends in ((one, other), (other, one))
+        ),
         (quads(*(lifted(point, floor) for point in (far_left, far_right, right, left))), wide, deep),
         (quads(*(lifted(point, low) for point in (left, right, far_right, far_left))), wide, deep),
     ]

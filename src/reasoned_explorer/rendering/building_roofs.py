@@ -15,7 +15,7 @@ PARAPET_M, _PARAPET_WIDTH_M = 0.55, 0.25
 #: How far gabled roofs reach beyond their walls, and how thick they are, metres.
 _EAVES_M, _VERGE_M, _THICK_M = 0.4, 0.25, 0.16
 #: Of a church's height, how much its nave has where it has a tower.
-_NAVE = 0.62
+_NAVE = 0.56
 
 
 class RoofKind(IntEnum):

@@ -52,7 +52,7 @@ def grass() -> Field:
     blades = clouds(rng, 24, 48, across=2, fall=0.9)
     tufts = clouds(rng, 4, 9, 18)
     lit = 0.62 + 0.24 * blades + 0.16 * tufts + 0.2 * (grain(rng) - 0.5)
-    return mixed((0.9, 1.0, 0.85), (1.0, 0.98, 0.72), clouds(rng, 3, 7)) * lit[..., None]
+    return mixed((0.93, 1.0, 0.92), (1.0, 0.98, 0.84), clouds(rng, 3, 7)) * lit[..., None]
 
 
 def earth() -> Field:

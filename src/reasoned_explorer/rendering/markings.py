@@ -25,7 +25,8 @@ Place = tuple[float, float, float]
 #: Edge of the squares into which everything is cut, so that what is not seen is not drawn, metres.
 CHUNK_M = 32.0
 _PAINT_Z_M, _SLEEPER_Z_M, _RAIL_Z_M = 0.012, 0.02, 0.06
-_WHITE = np.array((0.96, 0.96, 0.94))
+_WHITE = np.array((0.90, 0.90, 0.88))
+_TREAD = np.array((0.42, 0.41, 0.40))
 _STEEL, _SLEEPER = np.array((0.62, 0.60, 0.58)), np.array((0.42, 0.37, 0.33))
 _UNMARKED = frozenset({"service", "track", "living_street", "driveway", "pedestrian", "alley"})
 _MAIN = frozenset({"motorway", "trunk", "primary", "secondary", "tertiary"})
@@ -56,6 +57,7 @@ def markings_of(world: World, ground: GroundRaster, *, crossings: Crossings | No
         parking_bays(world, ground),
         pitches(world),
         *rails(world.ways),
+        stairs(world.ways),
         *kerbs(roads, ground, crossed),
         *shores(world, ground),
     ]
@@ -212,6 +214,18 @@ def rails(ways: tuple[Way, ...]) -> list[Patch]:
     _, begin, end = lines.stretches(every[~trams], every_m=0.9, long_m=0.26)
     parts.append(strips(begin, end, width_m=2.5, colour=_SLEEPER, z_m=_SLEEPER_Z_M, material=int(Material.CONCRETE)))
     return parts
+
+
+def stairs(ways: tuple[Way, ...]) -> Patch:
+    """Return the edges of steps, across ways that are stairs."""
+    flights = [way for way in ways if way.level == 0 and way.ground == Ground.STEPS]
+    lines = Lines([way.line for way in flights])
+    which, begin, end = lines.stretches(np.arange(len(flights)), every_m=0.45, long_m=0.1)
+    half = np.array([way.width_m / 2.0 for way in flights])[which]
+    step = end - begin
+    left = np.column_stack([-step[:, 1], step[:, 0]]) / np.maximum(np.hypot(*step.T), 1e-9)[:, None]
+    middle, aside = (begin + end) / 2.0, left * half[:, None]
+    return strips(middle - aside, middle + aside, width_m=0.1, colour=_TREAD, material=int(Material.STONE))
 
 
 def chunked(patches: list[Patch]) -> list[tuple[Model, Place]]:

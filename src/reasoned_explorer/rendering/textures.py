@@ -17,7 +17,7 @@ _MADE: dict[Material, tuple[Callable[[], Field], float]] = {
     Material.PAINT: (walls.paint, 1.0),
     Material.METAL: (walls.metal, 1.0),
     Material.WOOD: (walls.wood, 1.0),
-    Material.STONE: (walls.stone, 2.0),
+    Material.STONE: (walls.stone, 4.0),
     Material.CONCRETE: (walls.concrete, 4.0),
     Material.BRICK: (walls.brick, 1.25),
     Material.PLASTER: (walls.plaster, 2.0),

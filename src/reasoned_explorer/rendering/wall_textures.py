@@ -48,9 +48,12 @@ def wood() -> Field:
 
 
 def stone() -> Field:
-    """Return ashlar without joints: mottled, finely pitted; 2 m."""
+    """Return dressed stone: faint blocks, finely mottled; 4 m, 5 blocks by 10 courses."""
     rng = generator_of("stone")
-    return grey(0.84 + 0.16 * clouds(rng, 3, 7, 15) + 0.07 * (grain(rng) - 0.5) - 0.04)
+    along, up, own = courses(rng, 5, 10)
+    gap = joint(along, up, width_u=0.03, width_v=0.06)
+    mottled = 0.06 * (clouds(rng, 5, 11, 23) - 0.5) + 0.07 * (grain(rng) - 0.5)
+    return grey(0.89 + 0.06 * own + mottled - 0.1 * gap)
 
 
 def concrete() -> Field:
