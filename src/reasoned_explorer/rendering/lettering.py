@@ -6,6 +6,7 @@ Letters are strokes on a grid four units wide and six high, each stroke a flat b
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -80,7 +81,7 @@ class Plane:
     def points(self, flat: ArrayLike) -> FloatArray:
         """Return places in space of places on the plane, shape (n, 2) to (n, 3), metres."""
         places = np.asarray(flat, np.float64)
-        return np.asarray(self.origin) + places @ np.array([self.right, self.up])
+        return np.asarray(np.asarray(self.origin) + places @ np.array([self.right, self.up]))
 
 
 def facing_front(y: float, *, x: float = 0.0) -> Plane:
@@ -122,7 +123,8 @@ def write(
         half_u, half_v = width_m(text, height_m) / 2.0, 0.24 * height_m
         builder.decal(surface, plane.points(rectangle(centre[0], centre[1], 2.0 * half_u, 2.0 * half_v)))
         return
-    bars, at = [], 0.0
+    bars: list[FloatArray] = []
+    at = 0.0
     for letter in text:
         bars.extend(bar + np.array([at, 0.0]) for bar in _bars(letter))
         at += _advance(letter)
@@ -146,7 +148,7 @@ def _bars(letter: str) -> list[FloatArray]:
     found = []
     for line in _STROKES.get(letter, "").split("|"):
         points = [np.array([float(pair[0]), float(pair[1])]) for pair in line.split()]
-        for start, end in zip(points[:-1], points[1:], strict=True):
+        for start, end in pairwise(points):
             along = (end - start) / math.hypot(*(end - start)) * _STROKE / 2.0
             left = np.array([-along[1], along[0]])
             found.append(np.array([start - along - left, end + along - left, end + along + left, start - along + left]))
@@ -155,7 +157,8 @@ def _bars(letter: str) -> list[FloatArray]:
 
 def rectangle(u: float, v: float, width: float, height: float) -> FloatArray:
     """Return the corners of a rectangle about its middle, shape (4, 2)."""
-    return np.array([u, v]) + np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.array([width, height]) / 2.0
+    corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    return np.asarray(np.array([u, v]) + corners * np.array([width, height]) / 2.0)
 
 
 def disc(u: float, v: float, radius: float, *, sides: int = 16, turn_rad: float = 0.0) -> FloatArray:
@@ -169,13 +172,13 @@ def cross(u: float, v: float, size: float, *, arm: float = 0.33) -> FloatArray:
     far, near = size / 2.0, arm * size / 2.0
     quarter = [(far, -near), (far, near), (near, near)]
     turned = [(x * c - y * s, x * s + y * c) for c, s in ((1, 0), (0, 1), (-1, 0), (0, -1)) for x, y in quarter]
-    return np.array([u, v]) + np.array(turned)
+    return np.asarray(np.array([u, v]) + np.array(turned))
 
 
 def line(points: Sequence[tuple[float, float]], width: float) -> list[FloatArray]:
     """Return the rectangles of a line of a width, one for each piece, each shape (4, 2)."""
     found = []
-    for first, last in zip(points[:-1], points[1:], strict=True):
+    for first, last in pairwise(points):
         start, end = np.array(first), np.array(last)
         along = (end - start) / math.hypot(*(end - start))
         left = np.array([-along[1], along[0]]) * width / 2.0

@@ -7,25 +7,33 @@ texture coordinates are worked out at the end, for all triangles at once.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.mesh import Mesh
+from reasoned_explorer.rendering.mesh_maths import (
+    FloatArray,
+    IntArray,
+    bevelled_box,
+    box_uvs,
+    circle_points,
+    corner_normals,
+    faces_of,
+    signed_volume,
+    tangents_of,
+    two_across,
+    unit_box,
+)
 from reasoned_explorer.rendering.polygons import triangulated
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 Colour = tuple[float, float, float]
 
 #: The coarsest level of detail: a few boxes.
 FAR = 3
 #: Share of the sides of round bodies that is kept at each level of detail.
 _KEPT_SIDES = (1.0, 0.6, 0.4, 0.3)
-#: Edges that are sharper than this stay edges on rounded bodies (cosine between a face and the mean of its neighbours).
-_CREASE_COSINE = 0.55
 _LEAST_AREA_M2 = 1e-9
 _UP = np.array([0.0, 0.0, 1.0])
 
@@ -83,11 +91,11 @@ class MeshBuilder:
         lowest, highest = np.asarray(low, np.float64), np.asarray(high, np.float64)
         middle, half = (lowest + highest) / 2.0, (highest - lowest) / 2.0
         if bevel > 0.0 and self.detail == 0:
-            signs, triangles = _bevelled_box()
+            signs, triangles = bevelled_box()
             inset = np.minimum(bevel, 0.49 * half)
             vertices = (signs[:, None, :] * (half - inset * (1.0 - np.eye(3))[None])).reshape(-1, 3)
         else:
-            vertices, triangles = _unit_box()
+            vertices, triangles = unit_box()
             vertices = vertices * half
         self.part(surface, vertices + middle, triangles)
 
@@ -109,11 +117,11 @@ class MeshBuilder:
         across = np.cross(along, np.asarray(up, np.float64))
         across /= np.linalg.norm(across)
         over = np.cross(across, along)
-        vertices, triangles = _unit_box()
+        vertices, triangles = unit_box()
         frame = np.stack([across * width / 2.0, (last - first) / 2.0, over * height / 2.0])
         self.part(surface, vertices @ frame + (first + last) / 2.0, triangles)
 
-    def cylinder(  # noqa: PLR0917 - two ends and their radii
+    def cylinder(
         self,
         surface: Surface,
         start: ArrayLike,
@@ -138,7 +146,7 @@ class MeshBuilder:
             capped: Whether the ends are closed; leave them open only where nobody can see them.
         """
         first, last = np.asarray(start, np.float64), np.asarray(end, np.float64)
-        circle = _circle(self.sides(sides), *_across(last - first))
+        circle = circle_points(self.sides(sides), *two_across(last - first))
         rings = np.stack([first + radius * circle, last + (radius if end_radius is None else end_radius) * circle])
         self.loft(surface, rings, smooth=smooth, capped=capped)
 
@@ -151,21 +159,23 @@ class MeshBuilder:
         sides: int = 16,
         smooth: bool = True,
         stretch: tuple[float, float] = (1.0, 1.0),
+        capped: bool = True,
     ) -> None:
         """Add a body turned about an upright axis.
 
         Args:
             surface: Of all faces.
-            profile: Radius and height of its rings in order, metres; open ends are capped.
+            profile: Radius and height of its rings in order, metres.
             at: Where the axis meets height 0.
             sides: At the finest level.
             smooth: Round rather than faceted.
             stretch: Factors along x and y, for oval bodies.
+            capped: Whether the ends are closed; leave them open only where nobody can see them.
         """
         count = self.sides(sides)
-        circle = _circle(count, np.array([stretch[0], 0.0, 0.0]), np.array([0.0, stretch[1], 0.0]))
+        circle = circle_points(count, np.array([stretch[0], 0.0, 0.0]), np.array([0.0, stretch[1], 0.0]))
         rings = np.stack([radius * circle + np.array([0.0, 0.0, height]) for radius, height in profile])
-        self.loft(surface, rings + np.asarray(at, np.float64), smooth=smooth)
+        self.loft(surface, rings + np.asarray(at, np.float64), smooth=smooth, capped=capped)
 
     def sphere(
         self, surface: Surface, centre: ArrayLike, radius: float | Sequence[float], *, sides: int = 12, rings: int = 6
@@ -180,14 +190,14 @@ class MeshBuilder:
             rings: Bands from pole to pole, at the finest level.
         """
         bands = max(2, self.sides(rings))
-        circle = _circle(max(4, self.sides(sides)), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))
+        circle = circle_points(max(4, self.sides(sides)), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))
         angles = np.linspace(-math.pi / 2.0, math.pi / 2.0, bands + 1)
         widths = np.cos(angles)
         widths[[0, -1]] = 0.0
         unit = widths[:, None, None] * circle[None] + np.sin(angles)[:, None, None] * _UP
         self.loft(surface, unit * np.broadcast_to(np.asarray(radius, np.float64), 3) + np.asarray(centre, np.float64))
 
-    def torus(  # noqa: PLR0917 - a ring and its thickness
+    def torus(
         self,
         surface: Surface,
         centre: ArrayLike,
@@ -209,14 +219,14 @@ class MeshBuilder:
             around: Pieces along the ring, at the finest level.
             sides: Of the tube, at the finest level.
         """
-        circle = _circle(max(5, self.sides(around)), *_across(np.asarray(axis, np.float64)))
+        circle = circle_points(max(5, self.sides(around)), *two_across(np.asarray(axis, np.float64)))
         self.tube(surface, np.asarray(centre, np.float64) + radius * circle, thickness, sides=sides, closed=True)
 
     def tube(
         self,
         surface: Surface,
         points: ArrayLike,
-        radius: float | Sequence[float],
+        radius: ArrayLike,
         *,
         sides: int = 6,
         closed: bool = False,
@@ -233,14 +243,14 @@ class MeshBuilder:
         path = np.asarray(points, np.float64)
         radii = np.broadcast_to(np.asarray(radius, np.float64), len(path))
         count = self.sides(sides)
-        tangents = _tangents(path, closed=closed)
-        first, _ = _across(tangents[0])
+        tangents = tangents_of(path, closed=closed)
+        first, _ = two_across(tangents[0])
         rings = []
         for at, tangent, size in zip(path, tangents, radii, strict=True):
             # Carry the frame along the line, so that the skin does not twist.
             first = first - (first @ tangent) * tangent
             first /= np.linalg.norm(first)
-            rings.append(at + size * _circle(count, first, np.cross(tangent, first)))
+            rings.append(at + size * circle_points(count, first, np.cross(tangent, first)))
         self.loft(surface, np.stack(rings), capped=not closed, closed=closed)
 
     def extrude(
@@ -293,7 +303,7 @@ class MeshBuilder:
             start, end = triangulated(points[0]), triangulated(points[-1])
             caps = [start[:, ::-1], end + places[-1, 0]]
         whole = np.concatenate([skin, *caps]) if caps else skin
-        if _signed_volume(vertices, whole) < 0.0:
+        if signed_volume(vertices, whole) < 0.0:
             skin, caps = skin[:, ::-1], [cap[:, ::-1] for cap in caps]
         self.part(surface, vertices, skin, smooth=smooth)
         for cap in caps:
@@ -366,7 +376,7 @@ class MeshBuilder:
         cosine, sine = math.cos(heading_rad), math.sin(heading_rad)
         turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
         factors = np.broadcast_to(np.asarray(scale, np.float64), 3)
-        for part in other._parts:  # noqa: SLF001 - of its own kind
+        for part in other._parts:
             normals = None if part.normals is None else (part.normals / factors) @ turn
             self._parts.append(
                 _Part(
@@ -393,8 +403,8 @@ class MeshBuilder:
         triangles = np.concatenate([part.triangles + at for part, at in zip(self._parts, starts, strict=True)])
         counts = [len(part.triangles) for part in self._parts]
         smooth = np.repeat([part.smooth for part in self._parts], counts)
-        faces, areas = _faces(vertices, triangles)
-        normals = _corner_normals(vertices, triangles, faces * areas[:, None], smooth)
+        faces, areas = faces_of(vertices, triangles)
+        normals = corner_normals(vertices, triangles, faces * areas[:, None], smooth)
         own = np.repeat([part.normals is not None for part in self._parts], counts)
         if own.any():
             normals[own] = np.concatenate([part.normals for part in self._parts if part.normals is not None])
@@ -404,7 +414,7 @@ class MeshBuilder:
             vertices=vertices[used].astype(np.float32),
             triangles=compact.reshape(-1, 3).astype(np.int32),
             normals=normals[good].astype(np.float32),
-            uvs=_box_uvs(vertices[triangles[good]], faces[good]).astype(np.float32),
+            uvs=box_uvs(vertices[triangles[good]], faces[good]).astype(np.float32),
             colours=np.concatenate([part.colours for part in self._parts])[good].astype(np.float32),
             materials=np.repeat([part.material for part in self._parts], counts)[good].astype(np.uint8),
         )
@@ -418,109 +428,3 @@ _EMPTY = Mesh(
     np.zeros((0, 3), np.float32),
     np.zeros(0, np.uint8),
 )
-
-
-def _faces(vertices: FloatArray, triangles: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Return unit normals and areas of triangles."""
-    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
-    cross = np.cross(b - a, c - a)
-    length = np.linalg.norm(cross, axis=1)
-    return cross / np.maximum(length, 1e-300)[:, None], length / 2.0
-
-
-def _corner_normals(
-    vertices: FloatArray, triangles: IntArray, weighted: FloatArray, smooth: NDArray[np.bool_]
-) -> FloatArray:
-    """Return normals at the corners: of the face, or of all faces at a vertex where the skin is round."""
-    faces = weighted / np.maximum(np.linalg.norm(weighted, axis=1), 1e-300)[:, None]
-    normals = np.repeat(faces[:, None], 3, axis=1)
-    round_ones = triangles[smooth]
-    summed = np.stack(
-        [np.bincount(round_ones.ravel(), np.repeat(weighted[smooth, k], 3), len(vertices)) for k in range(3)], axis=1
-    )
-    shared = summed / np.maximum(np.linalg.norm(summed, axis=1), 1e-300)[:, None]
-    candidates = shared[round_ones]
-    agrees = np.einsum("mck,mk->mc", candidates, faces[smooth]) > _CREASE_COSINE
-    normals[smooth] = np.where(agrees[..., None], candidates, normals[smooth])
-    return normals
-
-
-def _box_uvs(corners: FloatArray, faces: FloatArray) -> FloatArray:
-    """Return texture coordinates, metres: each face is seen along the axis that it faces most, v upward."""
-    towards = np.abs(faces).argmax(axis=1)
-    sign = np.where(np.take_along_axis(faces, towards[:, None], axis=1) < 0.0, -1.0, 1.0)
-    x, y, z = corners[..., 0], corners[..., 1], corners[..., 2]
-    along = (towards[:, None] == np.arange(3))[:, :, None]
-    u = np.select([along[:, 0], along[:, 1]], [sign * y, -sign * x], sign * x)
-    v = np.select([along[:, 0], along[:, 1]], [z, z], y)
-    return np.stack([u, v], axis=-1)
-
-
-def _signed_volume(vertices: FloatArray, triangles: IntArray) -> float:
-    """Return six times the volume that triangles enclose, positive when they face outward."""
-    a, b, c = (vertices[triangles[:, corner]] - vertices[0] for corner in range(3))
-    return float(np.einsum("mk,mk->", a, np.cross(b, c)))
-
-
-def _circle(count: int, first: FloatArray, second: FloatArray) -> FloatArray:
-    """Return points of a circle in the plane of two axes, half a side away from the first, shape (count, 3)."""
-    angles = (np.arange(count) + 0.5) * 2.0 * math.pi / count
-    return np.cos(angles)[:, None] * first + np.sin(angles)[:, None] * second
-
-
-def _across(axis: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return two unit vectors across an axis, at right angles."""
-    along = axis / np.linalg.norm(axis)
-    helper = np.array([1.0, 0.0, 0.0]) if abs(along[0]) < 0.9 else np.array([0.0, 1.0, 0.0])
-    first = helper - (helper @ along) * along
-    first /= np.linalg.norm(first)
-    return first, np.cross(along, first)
-
-
-def _tangents(path: FloatArray, *, closed: bool) -> FloatArray:
-    """Return the direction of a line at each of its points."""
-    if closed:
-        steps = np.roll(path, -1, axis=0) - np.roll(path, 1, axis=0)
-    else:
-        steps = np.gradient(path, axis=0)
-    return steps / np.linalg.norm(steps, axis=1)[:, None]
-
-
-@lru_cache(maxsize=1)
-def _unit_box() -> tuple[FloatArray, IntArray]:
-    signs = _signs()
-    quads = []
-    for axis in range(3):
-        for sign in (-1.0, 1.0):
-            quads.append(np.flatnonzero(signs[:, axis] == sign)[[0, 1, 3, 2]])
-    return signs, _outward(signs, np.concatenate([[quad[[0, 1, 2]], quad[[0, 2, 3]]] for quad in quads]))
-
-
-@lru_cache(maxsize=1)
-def _bevelled_box() -> tuple[FloatArray, IntArray]:
-    """Return signs of the corners and triangles over vertices ``3 × corner + axis of the face it lies on``."""
-    signs = _signs()
-    quads, corners = [], []
-    for axis in range(3):
-        for sign in (-1.0, 1.0):
-            quads.append(3 * np.flatnonzero(signs[:, axis] == sign)[[0, 1, 3, 2]] + axis)
-        one, two = (axis + 1) % 3, (axis + 2) % 3
-        for start in np.flatnonzero(signs[:, axis] < 0.0).tolist():
-            end = start + (4, 2, 1)[axis]
-            quads.append(np.array([3 * start + one, 3 * end + one, 3 * end + two, 3 * start + two]))
-    corners = [np.arange(3) + 3 * corner for corner in range(8)]
-    places = np.concatenate([*([quad[[0, 1, 2]], quad[[0, 2, 3]]] for quad in quads), corners])
-    vertices = (signs[:, None, :] * (1.0 - 0.2 * (1.0 - np.eye(3))[None])).reshape(-1, 3)
-    return signs, _outward(vertices, places)
-
-
-def _signs() -> FloatArray:
-    """Return the corners of the cube from -1 to 1, z running fastest, shape (8, 3)."""
-    return np.stack(np.meshgrid([-1.0, 1.0], [-1.0, 1.0], [-1.0, 1.0], indexing="ij"), axis=-1).reshape(8, 3)
-
-
-def _outward(vertices: FloatArray, triangles: IntArray) -> IntArray:
-    """Return the triangles of a convex body about the origin, turned outward."""
-    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
-    inward = np.einsum("mk,mk->m", np.cross(b - a, c - a), a + b + c) < 0.0
-    return np.where(inward[:, None], triangles[:, ::-1], triangles)

@@ -48,9 +48,9 @@ def _pierced_stone(builder: MeshBuilder) -> None:
     steps = (26, 14, 9)[builder.detail]
     t = np.arange(steps) * 2 * math.pi / steps
     thick = 0.26 + 0.12 * np.cos(t + 2.2)
-    path = np.column_stack([0.42 * np.sin(t), 0.06 * np.sin(2 * t), 1.3 - 0.72 * np.cos(t)])
+    path = np.column_stack([0.42 * np.sin(t), 0.06 * np.sin(2 * t), 1.22 - 0.72 * np.cos(t)])
     builder.tube(LIMESTONE, path, thick, sides=12, closed=True)
-    builder.sphere(LIMESTONE, (0.16, 0.0, 2.25), (0.22, 0.2, 0.25), sides=12, rings=8)
+    builder.sphere(LIMESTONE, (0.16, 0.0, 2.2), (0.22, 0.2, 0.25), sides=12, rings=8)
 
 
 def _discs(builder: MeshBuilder) -> None:
@@ -99,7 +99,7 @@ def _rider(builder: MeshBuilder) -> None:
     """Somebody of bronze who stands on a high pedestal and points ahead."""
     stone, metal = GRANITE, Surface(BRONZE.material, (0.30, 0.42, 0.36))
     if builder.detail == FAR:
-        builder.box(stone, (-1.5, -1.5, 0), (1.5, 1.5, 0.4))
+        builder.cylinder(stone, (0, 0, 0), (0, 0, 0.7), 2.12, 1.1, sides=13, capped=False)
         builder.cylinder(stone, (0, 0, 0.4), (0, 0, 3.2), 1.0, 0.9, sides=13, capped=False)
         builder.cylinder(metal, (0, 0, 3.2), (0, 0, 6.0), 0.5, 0.2, sides=10, capped=False)
         return

@@ -201,7 +201,7 @@ def _horn(builder: MeshBuilder, plane: Plane, centre: tuple[float, float]) -> No
     loop = [(u + 0.07 * math.cos(a), v + 0.07 * math.sin(a)) for a in np.linspace(0, 2 * math.pi, 11)]
     for bar in line(loop, 0.022):
         builder.decal(BLACK, plane.points(bar))
-    builder.decal(BLACK, plane.points([(u, v + 0.06), (u - 0.15, v + 0.11), (u - 0.15, v + 0.0), (u, v + 0.08)]))
+    builder.decal(BLACK, plane.points([(u, v + 0.08), (u - 0.15, v + 0.11), (u - 0.15, v), (u, v + 0.06)]))
     builder.decal(BLACK, plane.points(rectangle(u + 0.09, v + 0.07, 0.16, 0.022)))
 
 

@@ -1,6 +1,7 @@
 """What one steps up to or under: shelters, telephone booths, vending machines, kiosks."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -56,13 +57,18 @@ def _shelter(builder: MeshBuilder, variant: int) -> None:
     for x in (-1.3, 0.0, 1.1):
         builder.box(post, (x - 0.04, -0.62, 0), (x + 0.04, -0.4, 0.44))
     if builder.detail <= 1 and variant == 0:
-        for plane in (facing_front(-0.775, x=0.9), facing_back(-0.825, x=0.9)):
-            builder.decal(SIGN_WHITE, plane.points(rectangle(0, 1.45, 0.7, 0.9)))
-            near = Plane((0.9, plane.origin[1] + math.copysign(0.01, plane.right[0] * -1), 0.0), plane.right)
-            builder.decal(plain(0.30, 0.55, 0.75), near.points(rectangle(0, 1.72, 0.6, 0.25)))
-            builder.decal(DARK_STEEL, near.points(rectangle(0, 1.38, 0.6, 0.05)))
-            builder.decal(DARK_STEEL, near.points(rectangle(0, 1.25, 0.6, 0.05)))
-        builder.decal(SIGN_YELLOW, facing_front(1.012).points(rectangle(0, 2.51, 3.6, 0.05)))
+        _timetable(builder)
+
+
+def _timetable(builder: MeshBuilder) -> None:
+    """A notice on the glass, read from both sides, and a bright line along the roof."""
+    for plane in (facing_front(-0.775, x=0.9), facing_back(-0.825, x=0.9)):
+        builder.decal(SIGN_WHITE, plane.points(rectangle(0, 1.45, 0.7, 0.9)))
+        near = Plane((0.9, plane.origin[1] - math.copysign(0.01, plane.right[0]), 0.0), plane.right)
+        builder.decal(plain(0.30, 0.55, 0.75), near.points(rectangle(0, 1.72, 0.6, 0.25)))
+        builder.decal(DARK_STEEL, near.points(rectangle(0, 1.38, 0.6, 0.05)))
+        builder.decal(DARK_STEEL, near.points(rectangle(0, 1.25, 0.6, 0.05)))
+    builder.decal(SIGN_YELLOW, facing_front(1.012).points(rectangle(0, 2.51, 3.6, 0.05)))
 
 
 def _telephone(builder: MeshBuilder, variant: int) -> None:
@@ -73,6 +79,28 @@ def _telephone(builder: MeshBuilder, variant: int) -> None:
         builder.box(pane, (-0.48, -0.48, 0), (0.48, 0.48, 1.9))
         builder.box(body, (-0.5, -0.5, 1.88), (0.5, 0.5, 2.3))
         return
+    _booth_body(builder, body, domed=variant == 0)
+    for plane in _around(0.51):
+        builder.decal(SIGN_WHITE, plane.points(rectangle(0, 2.02, 0.84, 0.15)))
+        write(builder, BLACK, "TELEPHONE", _nearer(plane), centre=(0, 2.02), height_m=0.1)
+    for number, plane in enumerate(_around(0.442)):
+        if builder.detail <= 1 and variant == 0:
+            _bars(builder, body, plane)
+        builder.decal(body, plane.points(rectangle(0, 0.24, 0.86, 0.24)))
+        if number > 0 and variant == 1:
+            _handset(builder, plane)
+
+
+def _bars(builder: MeshBuilder, body: Surface, plane: Plane) -> None:
+    """The bars that part a wall into many panes."""
+    rows = 6 if builder.detail == 0 else 3
+    for row in range(rows + 1):
+        builder.decal(body, plane.points(rectangle(0, 0.35 + 1.5 * row / rows, 0.86, 0.035)))
+    for u in (-0.26, 0.26):
+        builder.decal(body, _nearer(plane).points(rectangle(u, 1.1, 0.03, 1.55)))
+
+
+def _booth_body(builder: MeshBuilder, body: Surface, *, domed: bool) -> None:
     half = 0.46
     builder.box(body.shaded(0.7), (-0.48, -0.48, 0), (0.48, 0.48, 0.12))
     for x in (-half, half):
@@ -80,24 +108,11 @@ def _telephone(builder: MeshBuilder, variant: int) -> None:
             builder.box(body, (x - 0.04, y - 0.04, 0.1), (x + 0.04, y + 0.04, 2.0))
     builder.box(GLASS.shaded(1.4), (-0.43, -0.43, 0.12), (0.43, 0.43, 1.9))
     builder.box(body, (-0.5, -0.5, 1.88), (0.5, 0.5, 2.16), bevel=0.02)
-    if variant == 0:
+    if domed:
         dome = [[(x * k, y * k, z) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))] for k, z in _DOME]
         builder.loft(body, dome, smooth=False)
     else:
         builder.box(body, (-0.46, -0.46, 2.16), (0.46, 0.46, 2.3), bevel=0.06)
-    for plane in _around(0.51):
-        builder.decal(SIGN_WHITE, plane.points(rectangle(0, 2.02, 0.84, 0.15)))
-        write(builder, BLACK, "TELEPHONE", _nearer(plane), centre=(0, 2.02), height_m=0.1)
-    for number, plane in enumerate(_around(0.435)):
-        if builder.detail <= 1 and variant == 0:
-            rows = 6 if builder.detail == 0 else 3
-            for row in range(rows + 1):
-                builder.decal(body, plane.points(rectangle(0, 0.35 + 1.5 * row / rows, 0.86, 0.035)))
-            for u in (-0.26, 0.26):
-                builder.decal(body, _nearer(plane).points(rectangle(u, 1.1, 0.03, 1.55)))
-        builder.decal(body, plane.points(rectangle(0, 0.24, 0.86, 0.24)))
-        if number > 0 and variant == 1:
-            _handset(builder, plane)
 
 
 _DOME = ((0.48, 2.16), (0.42, 2.23), (0.2, 2.29), (0.06, 2.3))
@@ -135,8 +150,13 @@ def _nearer(plane: Plane) -> Plane:
 
 
 _CANS = (
-    (0.85, 0.10, 0.12), (0.10, 0.45, 0.75), (0.98, 0.65, 0.10), (0.12, 0.55, 0.28), (0.92, 0.92, 0.90), (0.45, 0.20, 0.50),
-)  # fmt: skip
+    plain(0.85, 0.10, 0.12),
+    plain(0.10, 0.45, 0.75),
+    plain(0.98, 0.65, 0.10),
+    plain(0.12, 0.55, 0.28),
+    plain(0.92, 0.92, 0.90),
+    plain(0.45, 0.20, 0.50),
+)
 
 
 def _vending_machine(builder: MeshBuilder, variant: int) -> None:
@@ -157,7 +177,7 @@ def _vending_machine(builder: MeshBuilder, variant: int) -> None:
         builder.decal(STEEL, _nearer(front).points(rectangle(-0.12, height - 0.02, 0.56, 0.02)))
         columns = (6, 6, 2)[builder.detail]
         for column in range(columns):
-            colour = plain(*_CANS[(row * 2 + column) % len(_CANS)])
+            colour = _CANS[(row * 2 + column) % len(_CANS)]
             wide = 0.5 / columns
             at = -0.12 - 0.25 + wide * (column + 0.5)
             builder.decal(colour, _nearer(front).points(rectangle(at, height + 0.075, 0.75 * wide, 0.15)))
@@ -193,12 +213,10 @@ def _kiosk(builder: MeshBuilder, variant: int) -> None:
         _goods(builder, _nearer(front))
         for side in (1.41, -1.41):
             for place, colour in enumerate(_CANS[:4]):
-                builder.decal(
-                    plain(*colour), facing_side(side, y=-0.2).points(rectangle(-0.6 + 0.42 * place, 1.4, 0.34, 0.5))
-                )
+                builder.decal(colour, facing_side(side, y=-0.2).points(rectangle(-0.6 + 0.42 * place, 1.4, 0.34, 0.5)))
         builder.box(DARK_STEEL, (-1.2, 0.7, 0.2), (-0.3, 0.85, 0.85))
         for place in range(4):
-            colour = plain(*_CANS[(place + 2) % 6])
+            colour = _CANS[(place + 2) % 6]
             builder.decal(colour, facing_front(0.862).points(rectangle(0.42 + 0.22 * place, 0.55, 0.17, 0.5)))
 
 
@@ -208,7 +226,7 @@ def _goods(builder: MeshBuilder, plane: Plane) -> None:
         builder.decal(OAK, plane.points(rectangle(0, 1.35 + 0.34 * row, 2.1, 0.03)))
         count = 10 if builder.detail == 0 else 5
         for place in range(count):
-            colour = plain(*_CANS[(3 * row + place) % len(_CANS)])
+            colour = _CANS[(3 * row + place) % len(_CANS)]
             u = -0.95 + 1.9 * (place + 0.5) / count
             builder.decal(colour, plane.points(rectangle(u, 1.47 + 0.34 * row, 1.9 / count * 0.7, 0.2)))
 
@@ -216,7 +234,7 @@ def _goods(builder: MeshBuilder, plane: Plane) -> None:
 def _awning(builder: MeshBuilder, low: float, high: float) -> None:
     stripes = (10, 6, 4)[builder.detail]
     edges = np.linspace(low, high, stripes + 1)
-    for place, (a, b) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+    for place, (a, b) in enumerate(pairwise(edges)):
         surface: Surface = PAINT if place % 2 else SIGN_WHITE
         builder.sheet(surface, [(a, 0.7, 2.42), (b, 0.7, 2.42), (b, 1.25, 2.12), (a, 1.25, 2.12)])
         builder.sheet(surface, [(a, 1.25, 2.12), (b, 1.25, 2.12), (b, 1.25, 1.98), (a, 1.25, 1.98)])

@@ -113,9 +113,7 @@ def _belt_at(body: _Body, y: float) -> float:
 
 def _lower(builder: MeshBuilder, body: _Body) -> None:
     """The body up to the windows: rounded sections from tail to nose."""
-    stations = (
-        body.belt if builder.detail <= 1 else (body.belt[0], body.belt[1], body.belt[4], body.belt[6], body.belt[7])
-    )
+    stations = body.belt if builder.detail <= 1 else [body.belt[k] for k in (0, 1, 2, 5, 6, 7)]
     rings = []
     for y, z in stations:
         end = abs(y) / 2.2
@@ -123,7 +121,7 @@ def _lower(builder: MeshBuilder, body: _Body) -> None:
         floor = 0.22 + 0.12 * max(0.0, end - 0.85) / 0.15
         half = [(0.9 * wide, floor), (wide, floor + 0.12), (wide, z - 0.16), (wide - 0.05, z - 0.04), (wide - 0.15, z)]
         if builder.detail == 2:
-            half = [half[0], half[2], half[4]]
+            half = [*half[:3], half[4]]
         rings.append([(x, y, h) for x, h in half] + [(-x, y, h) for x, h in reversed(half)])
     builder.loft(PAINT, rings)
     builder.box(_PLASTIC, (-0.8, -1.95, 0.15), (0.8, 1.95, 0.3))

@@ -11,7 +11,10 @@ from reasoned_explorer.rendering.models import (
     booths,
     cars,
     cycles,
+    halls,
     people,
+    places,
+    play,
     posts,
     seats,
     signs,
@@ -23,7 +26,7 @@ from reasoned_explorer.world.taxonomy import OBJECT_CLASSES
 
 _MAKERS: dict[str, Maker] = {
     name: maker
-    for module in (art, bins, booths, cars, cycles, people, posts, seats, signs, trees, waterworks)
+    for module in (art, bins, booths, cars, cycles, halls, people, places, play, posts, seats, signs, trees, waterworks)
     for name, maker in module.MAKERS.items()
 }
 

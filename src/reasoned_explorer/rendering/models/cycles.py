@@ -1,6 +1,7 @@
 """Bicycles, the racks they stand in and the stations where they are hired."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -22,6 +23,8 @@ from reasoned_explorer.rendering.models.palette import (
 
 _WHEEL_M = 0.345
 _REAR_Y, _FRONT_Y = -0.535, 0.535
+#: With the spokes that are left out.
+_FAR_TYRE = plain(0.27, 0.27, 0.28)
 _SADDLE = plain(0.12, 0.10, 0.09)
 _FRAME_COLOURS: tuple[Colour, ...] = (
     (0.78, 0.10, 0.10),
@@ -49,7 +52,7 @@ def add_bicycle(builder: MeshBuilder, frame: Surface, *, low_step: bool = False,
     crank, seat, head = (0, -0.1, 0.28), (0, -0.25, 0.82), (0, 0.36, 0.86)
     rear, front = (0, _REAR_Y, r), (0, _FRONT_Y, r)
     stem_top = (0, 0.3, 1.02)
-    thick = 0.02 if builder.detail <= 1 else 0.026
+    thick = 0.02 if builder.detail <= 1 else 0.028
     low_head = (0, 0.39, 0.72)
     tubes = [(crank, seat), (crank, low_head), (rear, crank), (rear, (0, -0.23, 0.74)), (head, front), (head, stem_top)]
     tubes.append(((0, -0.17, 0.5), low_head) if low_step else ((0, -0.235, 0.76), head))
@@ -67,12 +70,12 @@ def add_bicycle(builder: MeshBuilder, frame: Surface, *, low_step: bool = False,
             )
             builder.beam(DARK_STEEL, (side * 0.05, -0.1, 0.28), (side * 0.05, -0.1 + side * 0.14, 0.28), 0.025, 0.025)
     if builder.detail == 0:
-        for y, start, end in ((_REAR_Y, 1.2, 3.6), (_FRONT_Y, 0.5, 2.2)):
-            angles = np.linspace(start, end, 7)
+        for y, low, high in ((_REAR_Y, 1.2, 3.6), (_FRONT_Y, 0.5, 2.2)):
+            angles = np.linspace(low, high, 7)
             guard = np.column_stack([0 * angles, y + 0.385 * np.cos(angles), r + 0.385 * np.sin(angles)])
-            for first, last in zip(guard[:-1], guard[1:], strict=True):
-                side = np.array([0.028, 0, 0])
-                builder.sheet(frame, [first - side, first + side, last + side, last - side])
+            for first, last in pairwise(guard):
+                wide = np.array([0.028, 0, 0])
+                builder.sheet(frame, [first - wide, first + wide, last + wide, last - wide])
         builder.box(SIGN_YELLOW, (-0.03, 0.42, 0.86), (0.03, 0.48, 0.93))
         builder.box(plain(0.75, 0.05, 0.05), (-0.03, -0.9, 0.62), (0.03, -0.86, 0.67))
         builder.beam(DARK_STEEL, (0, -0.88, 0.7), (0, -0.3, 0.72), 0.12, 0.02)
@@ -84,7 +87,15 @@ def add_bicycle(builder: MeshBuilder, frame: Surface, *, low_step: bool = False,
 def _wheel(builder: MeshBuilder, y: float) -> None:
     r = _WHEEL_M
     around, thick = ((22, 0.022), (22, 0.026), (20, 0.034))[builder.detail]
-    builder.torus(RUBBER, (0, y, r), r - thick, thick, (1, 0, 0), around=around, sides=5 if builder.detail == 0 else 3)
+    builder.torus(
+        RUBBER if builder.detail < 2 else _FAR_TYRE,
+        (0, y, r),
+        r - thick,
+        thick,
+        (1, 0, 0),
+        around=around,
+        sides=5 if builder.detail == 0 else 3,
+    )
     if builder.detail <= 1:
         builder.cylinder(CHROME, (-0.04, y, r), (0.04, y, r), 0.03, sides=6)
         for turn in range(7 if builder.detail == 0 else 4):
@@ -163,7 +174,7 @@ def _bicycle_rental(builder: MeshBuilder, variant: int) -> None:
         builder.sheet(livery, [(-3.85, 0.0, 0), (-3.25, 0.0, 0), (-3.25, 0.0, 1.4), (-3.85, 0.0, 1.4)])
         builder.decal(DARK_STEEL, [(-4.0, -1.0, 0.05), (4.0, -1.0, 0.05), (4.0, 1.0, 0.05), (-4.0, 1.0, 0.05)])
         builder.sheet(livery.shaded(0.6), [(-3, -0.84, 0.0), (3.8, -0.84, 0.0), (3.8, -0.84, 0.35), (-3, -0.84, 0.35)])
-        for x in docks[[0, 2, 5]]:
+        for x in docks[[0, 1, 3]]:
             builder.sheet(livery.shaded(0.7), [(x, -0.75, 0.1), (x, 0.85, 0.1), (x, 0.5, 0.8), (x, -0.6, 0.7)])
         return
     builder.box(DARK_STEEL, (-4.0, -1.0, 0), (4.0, -0.55, 0.05))
@@ -177,7 +188,7 @@ def _bicycle_rental(builder: MeshBuilder, variant: int) -> None:
         builder.box(
             livery if builder.detail < 2 else DARK_STEEL, (x - 0.09, -0.95, 0.03), (x + 0.09, -0.72, 0.8), bevel=0.03
         )
-        if place not in (2, 4):
+        if place not in (2, 4, 5):
             builder.add(bicycle, (x, 0.05, 0), heading_rad=math.pi)
     _terminal(builder, -3.55, livery)
 

@@ -24,12 +24,14 @@ class Crown:
         radii: Of the clumps, shape (n,), metres.
         middle: Of the whole.
         reach: Half the extent of the whole along each axis, metres.
+        flat: Height of a clump as a share of its width.
     """
 
     centres: FloatArray
     radii: FloatArray
     middle: FloatArray
     reach: FloatArray
+    flat: float = 1.0
 
     def light(self, points: FloatArray) -> FloatArray:
         """Return how light it is at points, about 0.5 deep inside and below, 1 outside and at the top, shape (n,)."""
@@ -79,7 +81,7 @@ def add_cores(builder: MeshBuilder, surface: Surface, crown: Crown, rng: np.rand
     corners, faces = _ICOSAHEDRON if fine else _OCTAHEDRON
     count = len(crown.centres)
     rough = rng.uniform(0.7, 1.15, (count, len(corners), 1))
-    vertices = crown.centres[:, None] + crown.radii[:, None, None] * rough * corners[None]
+    vertices = crown.centres[:, None] + crown.radii[:, None, None] * rough * corners[None] * (1.0, 1.0, crown.flat)
     triangles = faces[None] + (len(corners) * np.arange(count))[:, None, None]
     flat, places = vertices.reshape(-1, 3), triangles.reshape(-1, 3)
     shades = 0.8 * crown.light(flat[places].mean(axis=1))
@@ -113,7 +115,7 @@ def add_tufts(
     centres = crown.centres[clump]
     towards = _unit(towards + 0.8 * crown.outward(centres))
     reach = crown.radii[clump, None] * rng.uniform(0.68, 1.15, (count, 1)) * spread
-    places = centres + towards * reach
+    places = centres + towards * reach * (1.0, 1.0, crown.flat)
     facing = _unit(towards + 0.75 * _unit(rng.normal(size=(count, 3))))
     first, second = _frames(facing)
     angles = rng.uniform(0.0, 2.0 * math.pi, (count, 1)) + np.array([0.0, 2.1, 4.2]) + rng.normal(0.0, 0.3, (count, 3))

@@ -22,9 +22,9 @@ class Maker:
         variants: How many there are.
         tints: Plausible tints, sRGB.
         scaling: As of `Model`.
-        fits: Whether every level is drawn out to exactly the class's size. Otherwise the model may reach beyond it
-            (a lamp's arm above people's heads, a climbing frame on a playground) and coarse levels are drawn out to the
-            extent of the finest.
+        fits: ``"all"``: every level is drawn out to exactly the class's size. ``"height"``: only upward; it may reach
+            beyond on the sides (a lamp's arm above people's heads). ``"none"``: it keeps its own size (a child, a
+            climbing frame on a playground). Coarse levels always have the extent of the finest.
         depth: ``"centred"``, or ``"wall"`` for fronts that begin at a wall at y = 0.
     """
 
@@ -32,7 +32,7 @@ class Maker:
     variants: int = 1
     tints: tuple[Colour, ...] = UNTINTED
     scaling: str = "axes"
-    fits: bool = True
+    fits: str = "all"
     depth: str = "centred"
 
     def model(self, variant: int, size_m: tuple[float, float, float]) -> Model:
@@ -42,18 +42,21 @@ class Maker:
             builder = MeshBuilder(detail=detail)
             self.make(builder, variant % self.variants)
             mesh = builder.mesh()
-            if not levels or len(mesh.triangles) < len(levels[-1].triangles):
-                levels.append(mesh)
+            # Where a coarser level saves nothing, the one before serves again.
+            levels.append(mesh if not levels or len(mesh.triangles) < len(levels[-1].triangles) else levels[-1])
         low, high = self._extent(levels[0], size_m)
         return Model(tuple(drawn_out(mesh, low, high) for mesh in levels), size_m, self.scaling)
 
     def _extent(
         self, finest: Mesh, size_m: tuple[float, float, float]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        if not self.fits:
-            vertices = finest.vertices.astype(np.float64)
-            return (vertices.min(axis=0), vertices.max(axis=0)) if len(vertices) else (np.zeros(3), np.zeros(3))
         size = np.asarray(size_m)
+        if self.fits != "all" and len(finest.vertices):
+            vertices = finest.vertices.astype(np.float64)
+            low, high = vertices.min(axis=0), vertices.max(axis=0)
+            high[2] = size[2] if self.fits == "height" else high[2] - low[2]
+            low[2] = 0.0
+            return low, high
         low = np.array([-size[0] / 2.0, 0.0 if self.depth == "wall" else -size[1] / 2.0, 0.0])
         return low, low + size
 

@@ -1,6 +1,5 @@
 """People: women, men and children, who stand or walk."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -90,8 +89,8 @@ def _person(builder: MeshBuilder, variant: int) -> None:
 def _far(builder: MeshBuilder, who: _Person) -> None:
     skin, hair = _SKINS[who.looks], _HAIRS[who.looks]
     deep = 0.16 + 0.5 * who.stride_m
-    builder.lathe(who.legs, [(1.0, 0.0), (0.95, 0.9)], sides=13, stretch=(0.2, deep))
-    builder.lathe(PAINT, [(0.92, 0.85), (1.0, 1.46)], sides=13, stretch=(0.25, 0.14))
+    builder.lathe(who.legs, [(1.0, 0.0), (0.95, 0.9)], sides=13, stretch=(0.2, deep), capped=False)
+    builder.lathe(PAINT, [(0.92, 0.85), (1.0, 1.46)], sides=13, stretch=(0.25, 0.14), capped=False)
     mixed = plain(*(0.6 * a + 0.4 * b for a, b in zip(skin.colour, hair.colour, strict=True)))
     builder.cylinder(mixed, (0, 0.01, 1.44), (0, 0.01, 1.75), 0.12, 0.11, sides=13, capped=False)
 
@@ -182,4 +181,4 @@ def _head(builder: MeshBuilder, who: _Person) -> None:
         builder.box(plain(0.62, 0.30, 0.28), (-0.022, 0.098, 1.572), (0.022, 0.113, 1.581))
 
 
-MAKERS = {"person": Maker(_person, variants=len(_PEOPLE), tints=_CLOTHES, scaling="uniform", fits=False)}
+MAKERS = {"person": Maker(_person, variants=len(_PEOPLE), tints=_CLOTHES, scaling="uniform", fits="none")}

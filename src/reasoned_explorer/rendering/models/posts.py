@@ -39,8 +39,8 @@ def _street_lamp(builder: MeshBuilder, variant: int) -> None:
 def _lamp_with_arm(builder: MeshBuilder) -> None:
     """A tapered mast whose arm bends forward over the street, with a flat lamp at its end."""
     if builder.detail == FAR:
-        builder.cylinder(STEEL, (0, 0, 0), (0, 0, 5.9), 0.1, 0.05, sides=10, capped=False)
-        builder.beam(STEEL, (0, 0, 5.85), (0, 1.7, 5.94), 0.2, 0.12)
+        builder.cylinder(STEEL, (0, 0, 0), (0, 0, 5.9), 0.12, 0.06, sides=10, capped=False)
+        builder.beam(STEEL, (0, 0, 5.85), (0, 1.78, 5.94), 0.28, 0.12)
         return
     builder.cylinder(DARK_STEEL, (0, 0, 0), (0, 0, 0.9), 0.125, 0.11, sides=10)
     builder.cylinder(STEEL, (0, 0, 0.85), (0, 0, 5.3), 0.085, 0.055, sides=10)
@@ -50,7 +50,7 @@ def _lamp_with_arm(builder: MeshBuilder) -> None:
     builder.extrude(DARK_STEEL, outline, "x", -0.14, 0.14)
     builder.decal(LIGHT, [(-0.11, 1.15, 5.872), (-0.11, 1.66, 5.878), (0.11, 1.66, 5.878), (0.11, 1.15, 5.872)])
     if builder.detail <= 1:
-        builder.box(STEEL, (-0.04, -0.13, 0.4), (0.04, -0.09, 0.8))
+        builder.box(STEEL, (-0.04, -0.124, 0.4), (0.04, -0.09, 0.8))
 
 
 def _lantern(builder: MeshBuilder) -> None:
@@ -84,6 +84,7 @@ def _lamp_with_globes(builder: MeshBuilder) -> None:
         builder.cylinder(post, (0, 0, 0), (0, 0, 5.6), 0.09, 0.05, sides=10, capped=False)
         for x in (-0.5, 0.5):
             builder.cylinder(LIGHT, (x, 0, 5.58), (x, 0, 6.0), 0.2, 0.14, sides=10, capped=False)
+        builder.card(post, (0, 0, 5.5), 1.0, 0.1)
         return
     builder.lathe(post, [(0.125, 0.0), (0.12, 0.5), (0.07, 0.62), (0.05, 5.5), (0.02, 5.75)], sides=10)
     arch = [(-0.5, 0, 5.6), (-0.45, 0, 5.45), (-0.2, 0, 5.4), (0.0, 0, 5.35)]
@@ -142,7 +143,9 @@ def _clock(builder: MeshBuilder, variant: int) -> None:
     body = (IRON, plain(0.09, 0.26, 0.19))[variant]
     if builder.detail == FAR:
         builder.cylinder(body, (0, 0, 0), (0, 0, 3.0), 0.07, 0.06, sides=10, capped=False)
-        builder.box(SIGN_WHITE, (-0.25, -0.12, 3.0), (0.25, 0.12, 3.5))
+        builder.box(body, (-0.25, -0.15, 3.0), (0.25, 0.15, 3.5))
+        for plane in (facing_front(0.16), facing_back(-0.16)):
+            builder.decal(SIGN_WHITE, plane.points(rectangle(0, 3.25, 0.36, 0.36)))
         return
     builder.lathe(body, [(0.15, 0.0), (0.15, 0.1), (0.08, 0.2), (0.08, 0.7), (0.05, 0.8), (0.05, 3.02)], sides=12)
     if builder.detail <= 1:
@@ -238,9 +241,9 @@ def _charging_station(builder: MeshBuilder, variant: int) -> None:
 
 
 MAKERS = {
-    "street_lamp": Maker(_street_lamp, variants=3, fits=False),
+    "street_lamp": Maker(_street_lamp, variants=3, fits="height"),
     "bollard": Maker(_bollard, variants=3),
-    "flagpole": Maker(_flagpole, variants=3, fits=False),
+    "flagpole": Maker(_flagpole, variants=3, fits="height"),
     "clock": Maker(_clock, variants=2),
     "parking_meter": Maker(_parking_meter, variants=2),
     "charging_station": Maker(_charging_station, variants=2),

@@ -1,6 +1,7 @@
 """What one sits on and at: benches, picnic tables, tables under an umbrella."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -11,11 +12,10 @@ from reasoned_explorer.rendering.models.palette import (
     DARK_WOOD,
     IRON,
     OAK,
-    PALE_WOOD,
     PAINT,
+    PALE_WOOD,
     SIGN_WHITE,
     STEEL,
-    plain,
 )
 
 _GREEN_WOOD = Surface(OAK.material, (0.16, 0.36, 0.22))
@@ -39,7 +39,7 @@ def _bench(builder: MeshBuilder, variant: int) -> None:
         builder.beam(slats, (-0.9, y, z), (0.9, y, z), 0.035, 0.1, up=(0, -0.22, 1))
     if not fine:
         builder.box(slats, (-0.9, -0.18, 0.42), (0.9, 0.3, 0.465))
-        builder.beam(slats, (-0.9, -0.23, 0.68), (0.9, -0.23, 0.68), 0.035, 0.34, up=(0, -0.22, 1))
+        builder.beam(slats, (-0.9, -0.23, 0.64), (0.9, -0.23, 0.64), 0.035, 0.42, up=(0, -0.22, 1))
     wide = 0.14 if frame is CONCRETE else 0.06
     for x in (-0.72, 0.72):
         builder.beam(frame, (x, 0.24, 0), (x, 0.24, 0.43), wide, 0.07, up=(0, 1, 0))
@@ -125,7 +125,7 @@ def _parasol(builder: MeshBuilder) -> None:
     for index in range(panels):
         surface = PAINT if index % 2 else SIGN_WHITE
         pair = circle[index : index + 2] * radius
-        for (inner, top), (outer, low) in zip(bands[:-1], bands[1:], strict=True):
+        for (inner, top), (outer, low) in pairwise(bands):
             upper = [(x * inner, y * inner, top) for x, y in pair]
             lower = [(x * outer, y * outer, low) for x, y in pair]
             builder.sheet(surface, [*lower, *upper[::-1]] if inner else [*lower, upper[0]])

@@ -1,6 +1,7 @@
 """What tells people something: bus stops, road signs, traffic lights, boards, columns of posters."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from reasoned_explorer.rendering.lettering import (
     rectangle,
     write,
 )
+from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.mesh_builder import FAR, MeshBuilder, Surface
 from reasoned_explorer.rendering.models.maker import Maker
 from reasoned_explorer.rendering.models.palette import (
@@ -29,7 +31,6 @@ from reasoned_explorer.rendering.models.palette import (
     STEEL,
     plain,
 )
-from reasoned_explorer.rendering.material import Material
 
 _BACK = Surface(Material.METAL, (0.52, 0.54, 0.55))
 
@@ -39,9 +40,9 @@ def _bus_stop(builder: MeshBuilder, variant: int) -> None:
     post = STEEL
     if builder.detail == FAR:
         builder.cylinder(post, (0, 0, 0), (0, 0, 2.8), 0.04, sides=10, capped=False)
-        sign = SIGN_YELLOW if variant == 0 else SIGN_BLUE
+        sign = plain(0.52, 0.66, 0.16) if variant == 0 else SIGN_BLUE
         builder.sheet(sign, facing_front(0.04).points(rectangle(0, 2.58, 0.4, 0.44)))
-        builder.sheet(SIGN_WHITE, facing_front(0.04).points(rectangle(0, 1.6, 0.32, 0.5)))
+        builder.sheet(SIGN_WHITE, facing_front(0.04).points(rectangle(0, 1.56, 0.3, 0.44)))
         return
     builder.cylinder(DARK_STEEL, (0, 0, 0), (0, 0, 0.05), 0.1, 0.08, sides=10)
     builder.cylinder(post, (0, 0, 0), (0, 0, 2.78), 0.035, sides=10)
@@ -157,7 +158,8 @@ def _traffic_signals(builder: MeshBuilder, variant: int) -> None:
     housing = (plain(0.07, 0.08, 0.08), plain(0.07, 0.08, 0.08), SIGN_YELLOW)[variant]
     if builder.detail == FAR:
         builder.cylinder(DARK_STEEL, (0, -0.06, 0), (0, -0.06, 2.3), 0.05, sides=10, capped=False)
-        builder.box(housing, (-0.17, -0.17, 2.2), (0.17, 0.17, 3.2))
+        far_housing = plain(0.48, 0.40, 0.07) if housing is SIGN_YELLOW else housing
+        builder.box(far_housing, (-0.17, -0.17, 2.2), (0.17, 0.17, 3.2))
         builder.decal(_lamp("red", lit == 0), facing_front(0.18).points(rectangle(0, 3.0, 0.22, 0.22)))
         builder.decal(_lamp("green", lit == 1), facing_front(0.18).points(rectangle(0, 2.4, 0.22, 0.22)))
         return
@@ -186,7 +188,7 @@ def _visor(builder: MeshBuilder, height: float) -> None:
     steps = 6 if builder.detail == 0 else 4
     angles = np.linspace(-0.15, math.pi + 0.15, steps)
     rim = np.column_stack([0.125 * np.cos(angles), np.zeros(steps), height + 0.125 * np.sin(angles)])
-    for start, end in zip(rim[:-1], rim[1:], strict=True):
+    for start, end in pairwise(rim):
         out = np.array([0.0, 0.175, 0.0])
         base = np.array([0.0, 0.1, 0.0])
         builder.sheet(BLACK, [start + base, end + base, end + out, start + out])

@@ -67,10 +67,10 @@ _SPRUCE = Surface(LEAVES.material, (0.58, 0.74, 0.80))
 _PINE = Surface(LEAVES.material, (0.70, 0.82, 0.78))
 
 _KINDS = (
-    _Kind(1, 15, 5.6, (3.0, 3.0, 3.35), 1.25, 0.12, 0.22, leaves=_LIME),
-    _Kind(2, 17, 6.1, (3.0, 3.0, 2.85), 1.15, -0.12, 0.28, leaves=_OAK),
+    _Kind(1, 15, 5.6, (2.6, 2.6, 3.35), 1.25, 0.12, 0.22, leaves=_LIME),
+    _Kind(2, 17, 6.1, (2.7, 2.7, 2.85), 1.15, -0.12, 0.28, leaves=_OAK),
     _Kind(3, 16, 5.35, (2.55, 2.55, 3.6), 1.05, 0.2, 0.2, leaves=_LIME),
-    _Kind(4, 13, 5.9, (2.9, 2.9, 3.0), 1.3, 0.0, 0.25, leaves=_OAK),
+    _Kind(4, 13, 5.9, (2.55, 2.55, 3.0), 1.3, 0.0, 0.25, leaves=_OAK),
     _Kind(5, 18, 5.4, (2.35, 2.35, 3.55), 0.8, 0.22, 0.14, _BIRCH_BARK, _BIRCH, 0.3),
     _Kind(6, 16, 5.6, (2.5, 2.5, 3.4), 0.85, 0.1, 0.13, _BIRCH_BARK, _BIRCH, 0.35),
 )
@@ -131,7 +131,7 @@ def _trunk(builder: MeshBuilder, kind: _Kind, crown: Crown) -> None:
     if builder.detail > 1:
         return
     if kind.bark is _BIRCH_BARK and builder.detail == 0:
-        _birch_marks(builder, kind, rng)
+        _birch_marks(builder, path, radii, rng)
     boughs = np.argsort(crown.centres[:, 2])[: (5, 3)[builder.detail]]
     for place in boughs:
         end = crown.centres[place]
@@ -140,14 +140,15 @@ def _trunk(builder: MeshBuilder, kind: _Kind, crown: Crown) -> None:
         builder.tube(kind.bark, [start, middle, end][:: 1 if builder.detail == 0 else 2], 0.3 * kind.trunk_m, sides=4)
 
 
-def _birch_marks(builder: MeshBuilder, kind: _Kind, rng: np.random.Generator) -> None:
+def _birch_marks(builder: MeshBuilder, path: FloatArray, radii: FloatArray, rng: np.random.Generator) -> None:
     """Dark scars across the white bark."""
     for _ in range(14):
-        height, angle = rng.uniform(0.3, 3.2), rng.uniform(0, 2 * math.pi)
-        radius = kind.trunk_m * (1.06 - 0.08 * height)
+        height, angle = rng.uniform(0.3, 2.6), rng.uniform(0, 2 * math.pi)
+        radius = 1.03 * float(np.interp(height, path[:, 2], radii))
+        centre = np.array([np.interp(height, path[:, 2], path[:, axis]) for axis in range(2)] + [height])
         out = np.array([math.cos(angle), math.sin(angle), 0.0])
-        side = np.array([-out[1], out[0], 0.0]) * rng.uniform(0.3, 0.6) * radius
-        at, up = out * radius + np.array([0, 0, height]), np.array([0, 0, rng.uniform(0.02, 0.05)])
+        side = np.array([-out[1], out[0], 0.0]) * rng.uniform(0.25, 0.5) * radius
+        at, up = centre + out * radius, np.array([0, 0, rng.uniform(0.02, 0.05)])
         builder.decal(plain(0.16, 0.15, 0.14), [at - side - up, at + side - up, at + side + up, at - side + up])
 
 
@@ -207,7 +208,7 @@ def _pine(builder: MeshBuilder) -> None:
             (0.1, -0.3, 8.35, 0.85),
         ]
     )
-    crown = Crown(clouds[:, :3], clouds[:, 3], np.array([0, 0, 6.6]), np.array([2.7, 2.7, 2.4]))
+    crown = Crown(clouds[:, :3], clouds[:, 3], np.array([0, 0, 6.6]), np.array([2.7, 2.7, 2.4]), flat=0.55)
     if builder.detail == FAR:
         builder.cylinder(_PINE_BARK, (0, 0, 0), (0, 0, 5.6), 0.18, 0.12, sides=10, capped=False)
         add_far_crown(builder, _PINE.shaded(0.75), [(0, 4.8), (2.4, 5.8), (1.5, 7.6), (0.0, 9.0)])
@@ -221,17 +222,9 @@ def _pine(builder: MeshBuilder) -> None:
     )
     for cloud in clouds if builder.detail < 2 else ():
         builder.tube(_PINE_BARK, [(0, 0, cloud[2] - 0.9), cloud[:3] * np.array([0.8, 0.8, 1.0])], 0.06, sides=4)
-    flat = MeshBuilder(detail=builder.detail)
-    squashed = Crown(
-        crown.centres * np.array([1, 1, 1 / 0.55]),
-        crown.radii,
-        crown.middle * np.array([1, 1, 1 / 0.55]),
-        crown.reach * np.array([1, 1, 1 / 0.55]),
-    )
-    add_cores(flat, _PINE, squashed, rng, fine=builder.detail == 0)
+    add_cores(builder, _PINE, crown, rng, fine=builder.detail == 0)
     count, size = ((480, 0.34), (90, 0.55), (16, 0.9))[builder.detail]
-    add_tufts(flat, _PINE, squashed, rng, count=count, size_m=size)
-    builder.add(flat, scale=(1.0, 1.0, 0.55))
+    add_tufts(builder, _PINE, crown, rng, count=count, size_m=size)
 
 
 def _shrub(builder: MeshBuilder, variant: int) -> None:
@@ -284,7 +277,7 @@ def _planter(builder: MeshBuilder, variant: int) -> None:
 _TUB = ((0.44, 0.0), (0.5, 0.44), (0.5, 0.5), (0.42, 0.5), (0.42, 0.46))
 
 MAKERS = {
-    "tree": Maker(_tree, variants=len(_KINDS) + len(_SPRUCES) + 1, tints=_GREENS, fits=False),
+    "tree": Maker(_tree, variants=len(_KINDS) + len(_SPRUCES) + 1, tints=_GREENS, fits="height"),
     "shrub": Maker(_shrub, variants=3, tints=_GREENS),
     "planter": Maker(_planter, variants=3, tints=_GREENS),
 }

@@ -40,7 +40,7 @@ def _fire_hydrant(builder: MeshBuilder, variant: int) -> None:
     builder.lathe(body, [(0.14, 0.575), (0.14, 0.61), (0.12, 0.625)], sides=18)
     builder.lathe(body, [(0.122, 0.62), (0.112, 0.675), (0.082, 0.72), (0.035, 0.745), (0.0, 0.75)], sides=16)
     builder.cylinder(caps, (0, 0, 0.74), (0, 0, 0.8), 0.035, 0.028, sides=5, smooth=False)
-    for x in (-1, 1):
+    for x in (-1.0, 1.0):
         builder.cylinder(body, (0.08 * x, 0, 0.47), (0.135 * x, 0, 0.47), 0.055, sides=12)
         builder.cylinder(caps, (0.13 * x, 0, 0.47), (0.165 * x, 0, 0.47), 0.062, 0.055, sides=12)
         if builder.detail <= 1:
@@ -52,9 +52,10 @@ def _fire_hydrant(builder: MeshBuilder, variant: int) -> None:
         builder.cylinder(caps, (0, 0.17, 0.44), (0, 0.195, 0.44), 0.028, sides=5, smooth=False)
         for turn in range(8):
             angle = math.radians(45 * turn + 22)
-            x, y = math.sin(angle), math.cos(angle)
-            builder.cylinder(IRON, (0.142 * x, 0.142 * y, 0.04), (0.142 * x, 0.142 * y, 0.065), 0.014, sides=5)
-            builder.cylinder(IRON, (0.122 * x, 0.122 * y, 0.325), (0.122 * x, 0.122 * y, 0.345), 0.011, sides=5)
+            east, north = math.sin(angle), math.cos(angle)
+            for reach, low, high in ((0.142, 0.04, 0.065), (0.122, 0.325, 0.345)):
+                at = (reach * east, reach * north)
+                builder.cylinder(IRON, (*at, low), (*at, high), 0.013, sides=5)
 
 
 def _fountain(builder: MeshBuilder, variant: int) -> None:
@@ -65,16 +66,15 @@ def _fountain(builder: MeshBuilder, variant: int) -> None:
         builder.cylinder(stone, (0, 0, 0), (0, 0, 0.62), 2.5, sides=17, capped=False)
         ring = [(2.4 * math.cos(a), 2.4 * math.sin(a), 0.56) for a in (np.arange(5) + 0.5) * 2 * math.pi / 5]
         builder.decal(WATER, ring)
-        builder.cylinder(stone, (0, 0, 0.45), (0, 0, 2.5), 0.32, 0.1, sides=10, capped=False)
-        builder.card(SPRAY, (0, 0, 0.5), 1.1, 1.0, 0.7)
+        builder.cylinder(stone.shaded(1.1), (0, 0, 0.45), (0, 0, 2.5), 0.4, 0.1, sides=10, capped=False)
+        builder.card(SPRAY, (0, 0, 0.5), 2.2, 1.3, 0.7)
         return
     count = max(8, builder.sides(sides)) if sides > 8 else 8
     profile = [(2.5, 0.0), (2.5, 0.08), (2.38, 0.12), (2.38, 0.48), (2.5, 0.54), (2.5, 0.62), (2.12, 0.62), (2.12, 0.1)]
     if builder.detail == 2:
         profile = [(2.5, 0.0), (2.45, 0.62), (2.12, 0.62), (2.12, 0.1)]
     _ring_of(builder, stone, profile, count)
-    surface = [(2.13 * math.cos(a), 2.13 * math.sin(a), 0.46) for a in (np.arange(count) + 0.5) * 2 * math.pi / count]
-    builder.decal(WATER, surface)
+    builder.lathe(WATER, [(2.13, 0.3), (2.13, 0.46)], sides=sides)
     if variant < 2:
         _bowls(builder, stone)
     else:
