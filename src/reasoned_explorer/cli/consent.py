@@ -24,6 +24,11 @@ def agree_to_send(model: str, places: Sequence[str], *, yes: bool) -> None:
     complain(f"note: pictures of {shown} are to be sent to {model}")
     if yes:
         return
-    if not sys.stdin.isatty() or not typer.confirm("Send them?", default=False, err=True):
+    if not _is_answered() or not typer.confirm("Send them?", default=False, err=True):
         fault = Fault(f"pictures of {shown} for {model}", "a yes to sending them", "--yes, or a model on this machine")
         raise SettingsError("captioner", [fault])
+
+
+def _is_answered() -> bool:
+    """Return whether there is somebody to ask."""
+    return sys.stdin is not None and sys.stdin.isatty()
