@@ -248,6 +248,7 @@ class Mission:
 
         def model_minds(name: str) -> Minds:
             desk, caller = caller_of(name)
+            desk.check_mind(name)
             return prompted_minds(caller, name=name, abilities=desk.abilities(name), seed=settings.seed)
 
         def model_captioner(name: str) -> Captioner:

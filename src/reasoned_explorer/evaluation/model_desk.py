@@ -161,6 +161,16 @@ class ModelDesk:
         self._callers.add(caller)
         return caller
 
+    def check_mind(self, name: str) -> None:
+        """Check that a model, which is ready, can be a mind.
+
+        Raises:
+            SettingsError: If it describes pictures and does nothing else.
+        """
+        if getattr(self._known[name].model, "only_describes", False):
+            fault = Fault(f"{name} describes pictures only", "a model that answers questions", "it may be a captioner")
+            raise SettingsError("minds", [fault])
+
     def captioner(self, name: str, caller: Caller, *, seed: int, place: str | None) -> PromptedCaptioner:
         """Return the captioner that shows pictures to a model.
 
