@@ -93,7 +93,7 @@ def floating(mesh: Mesh, part, gap_m: float):
         held[loose[touching]] = True
 
 
-def seen_from(mesh: Mesh, heading_rad: float, *, samples: int = 12000, cells: int = 40):
+def seen_from(mesh: Mesh, heading_rad: float, *, samples: int = 8000, cells: int = 30):
     """Return the triangle that is nearest in each filled cell of a coarse picture without perspective.
 
     Points are strewn evenly over the faces that look at the viewer, who stands at a heading from the mesh, a little up.

@@ -27,10 +27,11 @@ def normals_of(patch: Patch) -> Floats:
 
 
 def test_kerbs_stand_at_the_edge_and_face_the_road() -> None:
-    upright, back = kerbs_of(field(ways=[STREET], ground=Ground.PAVEMENT))
+    upright, top, back = kerbs_of(field(ways=[STREET], ground=Ground.PAVEMENT))
     y = upright.corners[..., 1]
-    np.testing.assert_allclose(np.abs(y - 50.0), 4.0, atol=0.03)
+    np.testing.assert_allclose(np.abs(y - 50.0), 3.87, atol=0.03)
     assert (normals_of(upright)[:, 1] * (y.mean(axis=1) - 50.0) < 0.0).all()
+    assert (normals_of(top)[:, 2] > 0.0).all()
     assert (normals_of(back)[:, 2] > 0.0).all()
     assert upright.corners[..., 2].max() == 0.08
 
@@ -38,8 +39,8 @@ def test_kerbs_stand_at_the_edge_and_face_the_road() -> None:
 def test_there_is_no_kerb_across_a_side_street_or_a_crossing() -> None:
     upright = kerbs_of(field(ways=[STREET, SIDE, WALK], ground=Ground.PAVEMENT))[0]
     middle = upright.corners[..., :2].mean(axis=1)
-    south = np.abs(middle[:, 1] - 46.0) < 0.1
-    north = np.abs(middle[:, 1] - 54.0) < 0.1
+    south = np.abs(middle[:, 1] - 46.0) < 0.2
+    north = np.abs(middle[:, 1] - 54.0) < 0.2
     assert not (north & (np.abs(middle[:, 0] - 20.0) < 3.8)).any()
     assert (south & (np.abs(middle[:, 0] - 20.0) < 12.0)).any()
     assert not ((south | north) & (np.abs(middle[:, 0] - 60.0) < 1.7)).any()
@@ -49,7 +50,7 @@ def test_car_parks_are_driven_into_without_a_kerb() -> None:
     lot = Region(Ground.PARKING, box(30, 54, 50, 70))
     upright = kerbs_of(field(ways=[STREET], regions=[lot], ground=Ground.PAVEMENT))[0]
     middle = upright.corners[..., :2].mean(axis=1)
-    assert not ((np.abs(middle[:, 1] - 54.0) < 0.1) & (middle[:, 0] > 31.0) & (middle[:, 0] < 49.0)).any()
+    assert not ((np.abs(middle[:, 1] - 54.0) < 0.2) & (middle[:, 0] > 31.0) & (middle[:, 0] < 49.0)).any()
 
 
 def test_water_has_quays_on_paving_and_banks_in_the_green() -> None:

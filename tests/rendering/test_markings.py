@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import shapely
 from numpy.typing import NDArray
 
 from reasoned_explorer.rendering.crossings import crossings_of
@@ -10,6 +11,7 @@ from reasoned_explorer.rendering.markings import (
     CHUNK_M,
     chunked,
     lane_lines,
+    lying_on,
     markings_of,
     parking_bays,
     pitches,
@@ -82,6 +84,17 @@ def test_stripes_fill_the_crossing_along_the_road() -> None:
     np.testing.assert_allclose(np.diff(np.sort(stripes[..., 1].mean(axis=1))), 1.0)
 
 
+def test_crossings_of_roads_that_meet_sharply_do_not_lie_on_each_other() -> None:
+    sharp = road((50, 50), (100, 60))
+    walks = [walk(62.0), Way("footway", Ground.PAVEMENT, np.array([(66.0, 46.0), (63.0, 60.0)]), 3.0)]
+    found = crossings_of(field(ways=[road((0, 50), (100, 50)), sharp, *walks]))
+    assert found.marked.sum() > 1
+    stripes = zebras(found).corners
+    shapes = shapely.polygons(stripes[..., :2])
+    at, other = shapely.STRtree(shapes).query(shapes, predicate="overlaps")
+    assert shapely.area(shapely.intersection(shapes[at], shapes[other])).sum() < 0.5
+
+
 def test_cars_stop_before_the_crossing_on_their_right_lane() -> None:
     lines = middles_of([stop_lines(crossings_of(field(ways=[road((0, 50), (100, 50)), walk(60.0)])))])
     by_x = lines[np.argsort(lines[:, 0])]
@@ -118,6 +131,16 @@ def test_stairs_have_steps_across() -> None:
     assert len(edges) == 20
     np.testing.assert_allclose(np.ptp(edges[..., 0], axis=1), 3.0)
     np.testing.assert_allclose(np.diff(np.sort(edges[..., 1].mean(axis=1))), 0.45)
+
+
+def test_what_another_ground_covers_is_not_painted() -> None:
+    square = Way("pedestrian", Ground.PLAZA, np.array([(30.0, 50.0), (60.0, 50.0)]), 20.0)
+    world = field(ways=[road((0, 50), (100, 50)), square])
+    roads = [way for way in world.ways if way.ground == Ground.ROAD]
+    (dashes, *_) = lane_lines(roads, clearings_of(roads, crossings_of(world)))
+    shown = lying_on(dashes, ground_map_of(world), Ground.ROAD).corners[..., 0].mean(axis=1)
+    assert 0 < len(shown) < len(dashes.corners)
+    assert ((shown < 21.0) | (shown > 69.0)).all()
 
 
 def test_everything_is_low_faces_up_and_comes_in_squares() -> None:

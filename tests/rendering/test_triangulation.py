@@ -107,6 +107,17 @@ def test_a_hole_that_touches_the_outline_in_one_corner() -> None:
     _assert_covers(triangles_of(SQUARE, [hole]), shapely.Polygon(SQUARE, [hole]))
 
 
+@pytest.mark.parametrize("turns", range(4))
+@pytest.mark.parametrize("start", range(4))
+def test_a_hole_that_touches_the_outline_corner_to_corner(turns: int, start: int) -> None:
+    outer = np.array([(0, 0), (2, 0), (2, 1), (3, 1), (3, 3), (0, 3)], float)
+    hole = np.roll(np.array([(1, 1), (2, 1), (2, 2), (1, 2)], float), start, axis=0)
+    quarter = np.linalg.matrix_power(np.array([(0.0, -1.0), (1.0, 0.0)]), turns)
+    for first in range(6):
+        ring = np.roll(outer, first, axis=0) @ quarter
+        _assert_covers(triangles_of(ring, [hole @ quarter]), shapely.Polygon(ring, [hole @ quarter]))
+
+
 def test_places_far_from_the_origin_are_as_exact() -> None:
     far = SQUARE + 250_000.0
     np.testing.assert_allclose(triangles_of(far) - 250_000.0, triangles_of(SQUARE), atol=1e-9)

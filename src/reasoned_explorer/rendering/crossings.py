@@ -43,6 +43,27 @@ class Crossings:
     walk_m: Floats
     marked: NDArray[np.bool_]
 
+    def cover(self, points: Floats, owners: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Return which points lie on the stripes of a crossing that comes before their own, shape (n,).
+
+        Args:
+            points: Shape (n, 2), metres.
+            owners: The crossing that each belongs to; the number of crossings for those that belong to none.
+        """
+        found = np.zeros(len(points), np.bool_)
+        chosen = np.flatnonzero(self.marked)
+        if not len(points) or not len(chosen):
+            return found
+        tree = shapely.STRtree(shapely.points(self.middles[chosen]))
+        reach = float((self.road_m[chosen] + self.walk_m[chosen]).max()) / 2.0 + 1.0
+        at, row = tree.query(shapely.points(points), predicate="dwithin", distance=reach)
+        crossing = chosen[row]
+        off, along = points[at] - self.middles[crossing], self.along[crossing]
+        ahead, aside = np.abs(np.sum(off * along, axis=1)), np.abs(_cross(off, along))
+        on = (ahead < self.walk_m[crossing] / 2.0 + 0.4) & (aside < self.road_m[crossing] / 2.0 + 0.2)
+        found[at[on & (crossing < owners[at])]] = True
+        return found
+
     def road_surfaces(self) -> list[Floats]:
         """Return what of the carriageway the crossing ways were painted over, as rings of four corners."""
         sine = np.abs(_cross(self.along, self.walks))

@@ -74,8 +74,8 @@ def sand() -> Field:
 def gravel() -> Field:
     """Return small stones of many greys; 2 m."""
     rng = generator_of("gravel")
-    inside, own = stones(rng, 30, jitter=0.9)
-    shade = 0.6 + 0.3 * np.clip(inside / 0.2, 0.0, 1.0) + 0.22 * (own - 0.5)
+    inside, own = stones(rng, 52, jitter=0.9)
+    shade = 0.72 + 0.14 * np.clip(inside / 0.2, 0.0, 1.0) + 0.16 * (own - 0.5) + 0.1 * (clouds(rng, 3, 7) - 0.5)
     return mixed((1.0, 0.97, 0.92), (0.94, 0.97, 1.0), own) * shade[..., None]
 
 

@@ -20,8 +20,10 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-_KERB_HIGH_M, _KERB_WIDE_M = 0.08, 0.3
+_KERB_HIGH_M, _KERB_WIDE_M = 0.08, 0.26
 _QUAY_HIGH_M, _QUAY_WIDE_M = 0.16, 0.45
+#: Stones reach this far into the area that they edge, metres: the drawn ground's border is only that exact.
+_INTO_M = 0.13
 _LONGEST_M = 12.0
 _SIDE_M = 0.45
 _GRANITE = np.array((0.80, 0.79, 0.77))
@@ -76,7 +78,7 @@ def kerbs(roads: Sequence[Way], ground: GroundRaster, crossings: Crossings) -> l
     beyond = _ground_beside(border, ground, _SIDE_M)
     within = _ground_beside(border, ground, -_SIDE_M)
     kept = np.isin(beyond, _KERBED) & (within == Ground.ROAD) & ~_at_crossings(border.middles, crossings)
-    return _edging(border.where(kept), high_m=_KERB_HIGH_M, wide_m=_KERB_WIDE_M, flat=0.0)
+    return _edging(border.where(kept), high_m=_KERB_HIGH_M, wide_m=_KERB_WIDE_M)
 
 
 def shores(world: World, ground: GroundRaster) -> list[Patch]:
@@ -87,7 +89,7 @@ def shores(world: World, ground: GroundRaster) -> list[Patch]:
     border = _borders_of(shapely.union_all(water))
     beyond = _ground_beside(border, ground, _SIDE_M)
     wet = _ground_beside(border, ground, -_SIDE_M) == Ground.WATER
-    quay = _edging(border.where(wet & np.isin(beyond, _PAVED)), high_m=_QUAY_HIGH_M, wide_m=_QUAY_WIDE_M, flat=0.6)
+    quay = _edging(border.where(wet & np.isin(beyond, _PAVED)), high_m=_QUAY_HIGH_M, wide_m=_QUAY_WIDE_M)
     return [*quay, _bank(border.where(wet & np.isin(beyond, _SOFT)))]
 
 
@@ -150,21 +152,20 @@ def _at_crossings(points: Floats, crossings: Crossings) -> Bools:
     return found
 
 
-def _edging(border: Borders, *, high_m: float, wide_m: float, flat: float) -> list[Patch]:
-    """Return stones along a border: upright towards the area, level for a share of their width, then down."""
-    border = _unfolded(border, wide_m)
+def _edging(border: Borders, *, high_m: float, wide_m: float) -> list[Patch]:
+    """Return stones along a border: upright towards the area, level for half their width, then down."""
+    border = _unfolded(_unfolded(border, wide_m), -_INTO_M)
     owners = np.zeros(len(border.begins), np.int64)
     length = np.hypot(*(border.ends - border.begins).T)
-    inner = [lifted(border.begins, 0.0), lifted(border.ends, 0.0)]
-    edge = [lifted(border.begins, high_m), lifted(border.ends, high_m)]
-    crest = [lifted(point + flat * wide_m * out, high_m) for point, out in _both(border)]
+    inner = [lifted(point - _INTO_M * out, 0.0) for point, out in _both(border)]
+    edge = [lifted(point - _INTO_M * out, high_m) for point, out in _both(border)]
+    crest = [lifted(point + 0.5 * wide_m * out, high_m) for point, out in _both(border)]
     foot = [lifted(point + wide_m * out, 0.0) for point, out in _both(border)]
     faces = [
         (quads(inner[1], inner[0], edge[0], edge[1]), high_m),
-        (quads(crest[1], crest[0], foot[0], foot[1]), wide_m),
+        (quads(edge[1], edge[0], crest[0], crest[1]), _INTO_M + 0.5 * wide_m),
+        (quads(crest[1], crest[0], foot[0], foot[1]), 0.5 * wide_m),
     ]
-    if flat > 0.0:
-        faces.append((quads(edge[1], edge[0], crest[0], crest[1]), flat * wide_m))
     return [
         Patch.of(
             face,

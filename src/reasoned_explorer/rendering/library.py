@@ -1,12 +1,14 @@
 """Models packed for the kernels: all their triangles, one after the other, and where each level of detail begins."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reasoned_explorer.rendering.mesh import Mesh, Model
+
+T = TypeVar("T", bound=np.generic)
 
 
 class Library(NamedTuple):
@@ -64,12 +66,10 @@ def linear_from_srgb(colours: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.where(colours <= 0.04045, straight, curved).astype(np.float32)
 
 
-def _joined(
-    parts: Sequence[NDArray[np.generic]], tail: tuple[int, ...], dtype: type[np.generic]
-) -> NDArray[np.float32]:
+def _joined(parts: Sequence[NDArray[Any]], tail: tuple[int, ...], dtype: type[T]) -> NDArray[T]:
     if not parts:
-        return np.zeros((0, *tail), dtype)  # type: ignore[return-value]
-    return np.ascontiguousarray(np.concatenate(parts).reshape(-1, *tail), dtype)  # type: ignore[return-value]
+        return np.zeros((0, *tail), dtype)
+    return np.ascontiguousarray(np.concatenate(parts).reshape(-1, *tail), dtype)
 
 
 def _box(levels: Sequence[Mesh]) -> NDArray[np.float64]:

@@ -26,7 +26,7 @@ Place = tuple[float, float, float]
 CHUNK_M = 32.0
 _PAINT_Z_M, _SLEEPER_Z_M, _RAIL_Z_M = 0.012, 0.02, 0.06
 _WHITE = np.array((0.90, 0.90, 0.88))
-_TREAD = np.array((0.42, 0.41, 0.40))
+_TREAD = np.array((0.52, 0.51, 0.49))
 _STEEL, _SLEEPER = np.array((0.62, 0.60, 0.58)), np.array((0.42, 0.37, 0.33))
 _UNMARKED = frozenset({"service", "track", "living_street", "driveway", "pedestrian", "alley"})
 _MAIN = frozenset({"motorway", "trunk", "primary", "secondary", "tertiary"})
@@ -50,14 +50,13 @@ def markings_of(world: World, ground: GroundRaster, *, crossings: Crossings | No
     """
     crossed = crossings_of(world) if crossings is None else crossings
     roads = [way for way in world.ways if is_carriageway(way)]
+    on_roads = [*lane_lines(roads, clearings_of(roads, crossed)), zebras(crossed), stop_lines(crossed)]
     patches = [
-        *lane_lines(roads, clearings_of(roads, crossed)),
-        zebras(crossed),
-        stop_lines(crossed),
+        *(lying_on(patch, ground, Ground.ROAD) for patch in on_roads),
         parking_bays(world, ground),
-        pitches(world),
+        lying_on(pitches(world), ground, Ground.PITCH),
         *rails(world.ways),
-        stairs(world.ways),
+        lying_on(stairs(world.ways), ground, Ground.STEPS),
         *kerbs(roads, ground, crossed),
         *shores(world, ground),
     ]
@@ -81,6 +80,12 @@ def strips(
     return Patch.of(
         corners, plan_uvs(corners), colours=colour, materials=material, owners=np.zeros(len(begins), np.int64)
     )
+
+
+def lying_on(patch: Patch, ground: GroundRaster, kind: Ground) -> Patch:
+    """Return the faces whose middle lies on a kind of ground: what lies above hides the others."""
+    middles = patch.corners[..., :2].mean(axis=1)
+    return patch.where(ground.at_many(middles[:, 0], middles[:, 1]) == kind)
 
 
 def lane_lines(roads: list[Way], clearings: Clearings) -> list[Patch]:
@@ -124,7 +129,17 @@ def zebras(crossings: Crossings) -> Patch:
     off = (place + 0.5 - np.repeat(count, count) / 2.0)[:, None]
     middle = crossings.middles[row] + off * across
     half = (crossings.walk_m[row] / 2.0)[:, None] * along
-    return strips(middle - half, middle + half, width_m=0.5)
+    # Where roads meet at a sharp angle, crossings would lie on each other.
+    free = ~_covered(crossings, middle - half, middle + half, row)
+    return strips((middle - half)[free], (middle + half)[free], width_m=0.5)
+
+
+def _covered(crossings: Crossings, begins: Floats, ends: Floats, owners: Ints) -> NDArray[np.bool_]:
+    """Return which strips touch the stripes of a crossing that comes before their own."""
+    found = np.zeros(len(begins), np.bool_)
+    for share in (0.0, 0.25, 0.5, 0.75, 1.0):
+        found |= crossings.cover(begins + share * (ends - begins), owners)
+    return found
 
 
 def stop_lines(crossings: Crossings) -> Patch:
@@ -137,7 +152,9 @@ def stop_lines(crossings: Crossings) -> Patch:
         before = crossings.middles[wide] - ahead * (crossings.walk_m[wide] / 2.0 + 1.2)[:, None]
         begins.append(before + 0.2 * right)
         ends.append(before + right * (crossings.road_m[wide] / 2.0 - 0.4)[:, None])
-    return strips(np.concatenate(begins), np.concatenate(ends), width_m=0.35)
+    begin, end = np.concatenate(begins), np.concatenate(ends)
+    free = ~_covered(crossings, begin, end, np.full(len(begin), len(crossings.middles)))
+    return strips(begin[free], end[free], width_m=0.35)
 
 
 def parking_bays(world: World, ground: GroundRaster) -> Patch:

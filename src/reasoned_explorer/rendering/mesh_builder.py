@@ -20,6 +20,7 @@ from reasoned_explorer.rendering.mesh_maths import (
     box_uvs,
     circle_points,
     corner_normals,
+    cross,
     faces_of,
     signed_volume,
     tangents_of,
@@ -60,9 +61,9 @@ class Surface:
 class _Part:
     vertices: FloatArray
     triangles: IntArray
-    colours: FloatArray
-    material: Material
+    surface: Surface
     smooth: bool
+    shades: FloatArray | None = None  # per triangle (m,), where they differ
     normals: FloatArray | None = None  # per corner (m, 3, 3), where a part brings its own
 
 
@@ -114,9 +115,9 @@ class MeshBuilder:
         """
         first, last = np.asarray(start, np.float64), np.asarray(end, np.float64)
         along = (last - first) / np.linalg.norm(last - first)
-        across = np.cross(along, np.asarray(up, np.float64))
+        across = cross(along, np.asarray(up, np.float64))
         across /= np.linalg.norm(across)
-        over = np.cross(across, along)
+        over = cross(across, along)
         vertices, triangles = unit_box()
         frame = np.stack([across * width / 2.0, (last - first) / 2.0, over * height / 2.0])
         self.part(surface, vertices @ frame + (first + last) / 2.0, triangles)
@@ -250,7 +251,7 @@ class MeshBuilder:
             # Carry the frame along the line, so that the skin does not twist.
             first = first - (first @ tangent) * tangent
             first /= np.linalg.norm(first)
-            rings.append(at + size * circle_points(count, first, np.cross(tangent, first)))
+            rings.append(at + size * circle_points(count, first, cross(tangent, first)))
         self.loft(surface, np.stack(rings), capped=not closed, closed=closed)
 
     def extrude(
@@ -289,8 +290,11 @@ class MeshBuilder:
         places = np.arange(count * around).reshape(count, around)
         for index in np.flatnonzero(np.ptp(points, axis=1).max(axis=1) < 1e-9):
             places[index] = places[index, 0]
-        lower, upper = (places, np.roll(places, -1, axis=0)) if closed else (places[:-1], places[1:])
-        turned_lower, turned_upper = np.roll(lower, -1, axis=1), np.roll(upper, -1, axis=1)
+        if closed:
+            places = np.concatenate([places, places[:1]])
+        ringed = np.concatenate([places, places[:, :1]], axis=1)
+        lower, upper = ringed[:-1, :-1], ringed[1:, :-1]
+        turned_lower, turned_upper = ringed[:-1, 1:], ringed[1:, 1:]
         skin = np.concatenate(
             [
                 np.stack([lower, turned_lower, turned_upper], axis=-1).reshape(-1, 3),
@@ -359,10 +363,7 @@ class MeshBuilder:
             shades: Factor of the colour of each triangle, shape (m,); 1 unless given.
             normals: At each corner, shape (m, 3, 3); worked out unless given.
         """
-        colours = np.broadcast_to(np.asarray(surface.colour), (len(triangles), 3))
-        if shades is not None:
-            colours = np.clip(colours * shades[:, None], 0.0, 1.0)
-        self._parts.append(_Part(vertices, triangles, colours, surface.material, smooth, normals))
+        self._parts.append(_Part(vertices, triangles, surface, smooth, shades, normals))
 
     def add(
         self,
@@ -382,12 +383,22 @@ class MeshBuilder:
                 _Part(
                     (part.vertices * factors) @ turn + np.asarray(at, np.float64),
                     part.triangles[:, ::-1] if np.prod(factors) < 0.0 else part.triangles,
-                    part.colours,
-                    part.material,
+                    part.surface,
                     part.smooth,
+                    part.shades,
                     normals if normals is None else normals / np.linalg.norm(normals, axis=-1, keepdims=True),
                 )
             )
+
+    def _colours(self, counts: list[int]) -> FloatArray:
+        colours = np.repeat(np.array([part.surface.colour for part in self._parts]), counts, axis=0)
+        if any(part.shades is not None for part in self._parts):
+            shades = [
+                np.ones(count) if part.shades is None else part.shades
+                for part, count in zip(self._parts, counts, strict=True)
+            ]
+            colours = np.clip(colours * np.concatenate(shades)[:, None], 0.0, 1.0)
+        return colours
 
     def sides(self, count: int) -> int:
         """Return how many sides a round body has at this level of detail that has ``count`` at the finest."""
@@ -415,8 +426,8 @@ class MeshBuilder:
             triangles=compact.reshape(-1, 3).astype(np.int32),
             normals=normals[good].astype(np.float32),
             uvs=box_uvs(vertices[triangles[good]], faces[good]).astype(np.float32),
-            colours=np.concatenate([part.colours for part in self._parts])[good].astype(np.float32),
-            materials=np.repeat([part.material for part in self._parts], counts)[good].astype(np.uint8),
+            colours=self._colours(counts)[good].astype(np.float32),
+            materials=np.repeat([part.surface.material for part in self._parts], counts)[good].astype(np.uint8),
         )
 
 

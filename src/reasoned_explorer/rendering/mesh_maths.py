@@ -13,12 +13,19 @@ IntArray = NDArray[np.int64]
 _CREASE_COSINE = 0.55
 
 
+def cross(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Return the cross products of vectors, shape (…, 3): much faster for few of them than numpy's own."""
+    a, b, c = one[..., 0], one[..., 1], one[..., 2]
+    d, e, f = other[..., 0], other[..., 1], other[..., 2]
+    return np.stack([b * f - c * e, c * d - a * f, a * e - b * d], axis=-1)
+
+
 def faces_of(vertices: FloatArray, triangles: IntArray) -> tuple[FloatArray, FloatArray]:
     """Return unit normals and areas of triangles."""
     a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
-    cross = np.cross(b - a, c - a)
-    length = np.linalg.norm(cross, axis=1)
-    return cross / np.maximum(length, 1e-300)[:, None], length / 2.0
+    product = cross(b - a, c - a)
+    length = np.linalg.norm(product, axis=1)
+    return product / np.maximum(length, 1e-300)[:, None], length / 2.0
 
 
 def corner_normals(
@@ -52,7 +59,7 @@ def box_uvs(corners: FloatArray, faces: FloatArray) -> FloatArray:
 def signed_volume(vertices: FloatArray, triangles: IntArray) -> float:
     """Return six times the volume that triangles enclose, positive when they face outward."""
     a, b, c = (vertices[triangles[:, corner]] - vertices[0] for corner in range(3))
-    return float(np.einsum("mk,mk->", a, np.cross(b, c)))
+    return float(np.einsum("mk,mk->", a, cross(b, c)))
 
 
 def circle_points(count: int, first: FloatArray, second: FloatArray) -> FloatArray:
@@ -67,7 +74,7 @@ def two_across(axis: FloatArray) -> tuple[FloatArray, FloatArray]:
     helper = np.array([1.0, 0.0, 0.0]) if abs(along[0]) < 0.9 else np.array([0.0, 1.0, 0.0])
     first = helper - (helper @ along) * along
     first /= np.linalg.norm(first)
-    return first, np.cross(along, first)
+    return first, cross(along, first)
 
 
 def tangents_of(path: FloatArray, *, closed: bool) -> FloatArray:
@@ -111,5 +118,5 @@ def _signs() -> FloatArray:
 def _outward(vertices: FloatArray, triangles: IntArray) -> IntArray:
     """Return the triangles of a convex body about the origin, turned outward."""
     a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
-    inward = np.einsum("mk,mk->m", np.cross(b - a, c - a), a + b + c) < 0.0
+    inward = np.einsum("mk,mk->m", cross(b - a, c - a), a + b + c) < 0.0
     return np.where(inward[:, None], triangles[:, ::-1], triangles)

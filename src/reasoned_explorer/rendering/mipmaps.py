@@ -12,7 +12,7 @@ from reasoned_explorer.rendering.textures import TEXTURE_METRES, texture_stack
 _FIRST_BLOCK = 4
 
 
-def textures_of(stack: NDArray[np.float32], metres: NDArray[np.float64]) -> Textures:
+def textures_of(stack: NDArray[np.float32], metres: NDArray[np.float32]) -> Textures:
     """Return textures with all their levels.
 
     Args:
@@ -75,7 +75,8 @@ def _block_means(codes: NDArray[np.uint8], colours: NDArray[np.float32]) -> NDAr
     for j in range(_FIRST_BLOCK):
         for i in range(_FIRST_BLOCK):
             total += colours[padded[j::_FIRST_BLOCK, i::_FIRST_BLOCK]]
-    return total / np.float32(_FIRST_BLOCK**2)
+    total /= np.float32(_FIRST_BLOCK**2)
+    return total
 
 
 def surfaces_of(library: Library, instances: Instances) -> Surfaces:

@@ -1,5 +1,7 @@
 """Flat polygons in space, cut into triangles."""
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,20 +18,46 @@ def triangulated(points: FloatArray) -> IntArray:
     Returns:
         Places of corners, shape (n - 2, 3).
     """
-    count = len(points)
-    if count == 3:
-        return np.array([[0, 1, 2]])
-    turned = np.roll(points, -1, axis=0)
-    normal = np.cross(points - points[0], turned - points[0]).sum(axis=0)
-    turns = np.cross(points - np.roll(points, 1, axis=0), turned - points) @ normal
-    if (turns >= -1e-12).all():
-        return _strip(count)
+    normal, convex = _turning(points.tolist())
+    if convex:
+        return _strip(len(points))
     first = points[1] - points[0]
     first = first / np.linalg.norm(first)
-    second = np.cross(normal, first)
-    return _clipped(np.column_stack([points @ first, points @ second / np.linalg.norm(second)]))
+    second = np.array(_cross_of(normal, first.tolist()))
+    arms = points - points[0]
+    flat = np.column_stack([arms @ first, arms @ second / np.linalg.norm(second)])
+    # The same figure comes again and again, in other places.
+    return _remembered(np.round(flat, 7).tobytes())
 
 
+@lru_cache(maxsize=512)
+def _remembered(flat: bytes) -> IntArray:
+    return _clipped(np.frombuffer(flat, np.float64).reshape(-1, 2))
+
+
+def _turning(points: list[list[float]]) -> tuple[list[float], bool]:
+    """Return a polygon's normal (of any length) and whether it turns one way at all its corners."""
+    # In plain Python: polygons have few corners, and there are thousands of them.
+    x0, y0, z0 = points[0]
+    arms = [(x - x0, y - y0, z - z0) for x, y, z in points]
+    nx = ny = nz = 0.0
+    turns = []
+    ax, ay, az = arms[-2]
+    bx, by, bz = arms[-1]
+    for cx, cy, cz in arms:
+        nx, ny, nz = nx + by * cz - bz * cy, ny + bz * cx - bx * cz, nz + bx * cy - by * cx
+        ux, uy, uz, vx, vy, vz = bx - ax, by - ay, bz - az, cx - bx, cy - by, cz - bz
+        turns.append((uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx))
+        ax, ay, az, bx, by, bz = bx, by, bz, cx, cy, cz
+    return [nx, ny, nz], all(tx * nx + ty * ny + tz * nz >= -1e-12 for tx, ty, tz in turns)
+
+
+def _cross_of(one: list[float], other: list[float]) -> list[float]:
+    (a, b, c), (d, e, f) = one, other
+    return [b * f - c * e, c * d - a * f, a * e - b * d]
+
+
+@lru_cache(maxsize=256)
 def _strip(count: int) -> IntArray:
     """Return a convex polygon's triangles as a zigzag, which has fewer slivers than a fan."""
     low, high, found = 0, count - 1, []

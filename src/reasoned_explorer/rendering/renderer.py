@@ -12,7 +12,7 @@ from reasoned_explorer.rendering.conditions import Conditions
 from reasoned_explorer.rendering.light import developing_curve, light_of, sun_direction
 from reasoned_explorer.rendering.mipmaps import ground_looks_of, material_textures, surfaces_of
 from reasoned_explorer.rendering.projection import Projection, projection_of
-from reasoned_explorer.rendering.raster_kernels import BLOCK, Canvas, Scratch, draw, read_out
+from reasoned_explorer.rendering.raster_kernels import BLOCK, BUCKETS, Canvas, Scratch, draw, read_out
 from reasoned_explorer.rendering.scene import Scene
 from reasoned_explorer.rendering.shading_kernels import shade
 from reasoned_explorer.rendering.shadows import ShadowTiles
@@ -125,6 +125,7 @@ class Renderer:
                     canvas,
                     self._curve,
                     wanted,
+                    *self._room().samples,
                     colour,
                 )
             if done:
@@ -158,7 +159,11 @@ class _Room:
             np.empty(count),
             np.empty((count + 1, 4), np.int32),
             np.empty(count, np.int8),
+            np.empty(count, np.int32),
+            np.empty(BUCKETS + 1, np.int32),
+            np.empty((3, 4)),
         )
+        self.samples = np.empty(4, np.int32), np.empty(4, np.int32)
         self.wanted = np.zeros(wanted_size, np.uint8)
         self.canvases: dict[tuple[int, int], Canvas] = {}
 

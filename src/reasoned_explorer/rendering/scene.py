@@ -12,7 +12,7 @@ from reasoned_explorer.rendering.buildings import models_of_buildings
 from reasoned_explorer.rendering.ground import GroundMap, ground_of
 from reasoned_explorer.rendering.library import Library, linear_from_srgb, pack
 from reasoned_explorer.rendering.mesh import Model
-from reasoned_explorer.rendering.sources import ModelSource, object_models
+from reasoned_explorer.rendering.models import model_of, tints_of, variants_of
 from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.taxonomy import CLASS_NAMES
 from reasoned_explorer.world.world import World, WorldObject
@@ -117,8 +117,7 @@ class Scene:
         things = [Placed(mesh, GROUND_ID, place) for mesh, place in ground.markings]
         for k, (model, place) in enumerate(models_of_buildings(plain.buildings, seed=looks)):
             things.append(Placed(model, FIRST_BUILDING_ID + k, place))
-        sources = object_models()
-        things += [_placed(item, sources, looks, first_object + item.id) for item in plain.objects]
+        things += [_placed(item, looks, first_object + item.id) for item in plain.objects]
         codes = {name: PICTURE_CLASSES.index(name) for name in CLASS_NAMES}
         classes = [0, 1, *([2] * len(plain.buildings)), *(codes[item.class_name] for item in plain.objects)]
         return cls.of_things(things, ground, np.array(classes, np.uint8))
@@ -141,11 +140,10 @@ class Scene:
         return int(self.library.levels[firsts, 3].astype(np.int64).sum())
 
 
-def _placed(item: WorldObject, sources: Mapping[str, ModelSource], seed: int, instance_id: int) -> Placed:
-    source = sources[item.class_name]
-    variant = key_of(seed, "variant", item.id) % max(1, source.variants)
-    model = source.model(variant)
-    tint = choice(source.tints, seed, "tint", item.id) if source.tints else (1.0, 1.0, 1.0)
+def _placed(item: WorldObject, seed: int, instance_id: int) -> Placed:
+    variant = key_of(seed, "variant", item.id) % variants_of(item.class_name)
+    model = model_of(item.class_name, variant)
+    tint = choice(tints_of(item.class_name), seed, "tint", item.id)
     return Placed(model, instance_id, (item.x_m, item.y_m, 0.0), item.heading_rad, _scale(model, item), tint)
 
 

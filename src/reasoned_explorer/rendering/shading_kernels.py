@@ -7,9 +7,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from reasoned_explorer.rendering.compiling import inlined, kernel
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.projection import Projection
 from reasoned_explorer.rendering.raster_kernels import GROUND, SKY, Canvas
@@ -24,6 +24,8 @@ Pages = NDArray[np.int32]
 Tiles = NDArray[np.uint16]
 _WATER, _FOLIAGE, _PAINT, _LIT = int(Material.WATER), int(Material.FOLIAGE), int(Material.PAINT), int(Material.GLOW)
 _GLASS, _FACADE_GLASS = int(Material.GLASS), int(Material.FACADE_GLASS)
+_ASPHALT, _PAVING = int(Material.ASPHALT), int(Material.PAVING)
+_COBBLES, _CONCRETE = int(Material.COBBLES), int(Material.CONCRETE)
 #: Beyond this footprint of a pixel the ground is drawn from averages of its colours, in cells of the ground map.
 _FINE_CELLS, _COARSE_CELLS = 2.0, 5.0
 
@@ -104,7 +106,7 @@ class Light(NamedTuple):
 SUN, SUNLIGHT, SKYLIGHT, BOUNCE, ZENITH, HORIZON, GLOW, CLOUD = range(8)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _halvings(size: float, most: int) -> tuple[int, float]:
     """How often a size can be halved until it is below 2, at most ``most`` times, and what is left, at least 1."""
     count = 0
@@ -114,7 +116,7 @@ def _halvings(size: float, most: int) -> tuple[int, float]:
     return count, min(max(size, 1.0), 2.0)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _level_texel(t: Texels, starts: Ints, size: int, material: int, u: float, v: float, level: int) -> Rgb:
     """A texture's colour, bilinear in one level; u and v count repetitions."""
     side = size >> level
@@ -135,7 +137,7 @@ def _level_texel(t: Texels, starts: Ints, size: int, material: int, u: float, v:
     )
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _texel(
     texels: Texels,
     starts: Ints,
@@ -163,7 +165,7 @@ def _texel(
     return red, green, blue
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _sky(tones: Floats, clouds: Texels, x: float, y: float, z: float) -> Rgb:
     """The sky in a direction of length 1."""
     up = max(z, 0.0)
@@ -196,7 +198,7 @@ def _sky(tones: Floats, clouds: Texels, x: float, y: float, z: float) -> Rgb:
     return red, green, blue
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _hazed(tones: Floats, haze_m: float, colour: Rgb, distance: float, x: float, y: float, z: float) -> Rgb:
     """What is left of a colour after the air before it; the direction is of length 1."""
     thick = distance / haze_m
@@ -211,7 +213,7 @@ def _hazed(tones: Floats, haze_m: float, colour: Rgb, distance: float, x: float,
     )
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _mirrored(tones: Floats, clouds: Texels, colour: Rgb, share: float, x: float, y: float, z: float) -> Rgb:
     """A colour with a share of what is seen of the surroundings in a mirrored direction."""
     seen = _sky(tones, clouds, x, y, abs(z))
@@ -225,7 +227,52 @@ def _mirrored(tones: Floats, clouds: Texels, colour: Rgb, share: float, x: float
     )
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
+def _mirror_image(
+    nearness: Texels,
+    owners: Pages,
+    picture: Codes,
+    samples: int,
+    eye: Floats,
+    axes: Floats,
+    focal: float,
+    centre_x: float,
+    centre_y: float,
+    x: float,
+    y: float,
+    rx: float,
+    ry: float,
+    rz: float,
+) -> tuple[float, float, float, float]:
+    """What is seen from a point (x, y) of the ground in a direction, as far as it is in the picture and drawn already.
+
+    Returns:
+        Linear light, and 1, or 0 where nothing was found. What is mirrored lies above in the picture, whose upper rows
+        are there already.
+    """
+    step = 0.15
+    reach = 0.0
+    for _ in range(24):
+        reach += step
+        step *= 1.22
+        qx, qy, qz = x + reach * rx - eye[0], y + reach * ry - eye[1], reach * rz - eye[2]
+        depth = qx * axes[2, 0] + qy * axes[2, 1] + qz * axes[2, 2]
+        if depth < 0.1:
+            break
+        scale = focal / depth
+        column = math.floor(centre_x + scale * (qx * axes[0, 0] + qy * axes[0, 1] + qz * axes[0, 2]))
+        row = math.floor(centre_y + scale * (qx * axes[1, 0] + qy * axes[1, 1] + qz * axes[1, 2]))
+        if not (0 <= row < nearness.shape[0] and 0 <= column < nearness.shape[1]):
+            break
+        seen = nearness[row, column]
+        if owners[row, column] >= 0 and seen * depth > 1.0 and (depth - step * 1.5 - 0.2) * seen < 1.0:
+            row, column = (row >> 1, column >> 1) if samples == 2 else (row, column)
+            red, green, blue = picture[row, column, 0], picture[row, column, 1], picture[row, column, 2]
+            return red * red / 65025.0, green * green / 65025.0, blue * blue / 65025.0, 1.0
+    return 0.0, 0.0, 0.0, 0.0
+
+
+@inlined
 def _kind_at(codes: Codes, corner: Floats, x: float, y: float) -> int:
     """The kind of ground at a point: the one with most weight among the four nearest cells."""
     rows, columns = codes.shape
@@ -253,7 +300,7 @@ def _kind_at(codes: Codes, corner: Floats, x: float, y: float) -> int:
     return d if sum_d > most else kind
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _average_at(corner: Floats, averages: Texels, layout: Ints, x: float, y: float, cells: float) -> Rgb:
     """The mean colour of the ground around a point, over about so many cells across."""
     level = _halvings(cells * 0.35, layout.shape[0] - 1)[0]
@@ -275,7 +322,7 @@ def _average_at(corner: Floats, averages: Texels, layout: Ints, x: float, y: flo
     )
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _ground(
     codes: Codes,
     corner: Floats,
@@ -299,6 +346,7 @@ def _ground(
     coarse_pages: Pages,
     coarse: Tiles,
     wanted: Codes,
+    mirror: tuple[float, float, float, float],
     x: float,
     y: float,
     distance: float,
@@ -330,7 +378,7 @@ def _ground(
     lit = tones[SUN, 2] * (1.0 - shadow * (1.0 - lit))
     wet = 0.0
     if wetness > 0.0 and material != _WATER:
-        wet = wetness
+        wet = wetness if material in (_ASPHALT, _PAVING, _COBBLES, _CONCRETE) else 0.25 * wetness
         dark = 1.0 - 0.4 * wet
         red, green, blue = red * dark, green * dark, blue * dark
     colour = (
@@ -341,12 +389,19 @@ def _ground(
     if material == _WATER or wet > 0.0:
         graze = 1.0 - lift
         graze *= graze
-        share = 0.06 + 0.75 * graze * graze if material == _WATER else wet * (0.03 + 0.55 * graze * graze)
-        colour = _mirrored(tones, clouds, colour, share, dx, dy, -dz)
+        share = 0.06 + 0.75 * graze * graze if material == _WATER else wet * (0.04 + 0.6 * graze * graze)
+        if mirror[3] > 0.0:
+            colour = (
+                colour[0] + share * (mirror[0] - colour[0]),
+                colour[1] + share * (mirror[1] - colour[1]),
+                colour[2] + share * (mirror[2] - colour[2]),
+            )
+        else:
+            colour = _mirrored(tones, clouds, colour, share, dx, dy, -dz)
     return _hazed(tones, haze_m, colour, distance, dx, dy, dz)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _surface(
     faces: Texels,
     stands: Floats,
@@ -407,7 +462,7 @@ def _surface(
     red *= faces[t, 24]
     green *= faces[t, 25]
     blue *= faces[t, 26]
-    if material == _PAINT or material == _FOLIAGE:
+    if material in (_PAINT, _FOLIAGE):
         red *= stands[i, 8]
         green *= stands[i, 9]
         blue *= stands[i, 10]
@@ -415,7 +470,7 @@ def _surface(
         return _hazed(tones, haze_m, (red * lamps, green * lamps, blue * lamps), distance, dx, dy, dz)
     slant = nx * tones[SUN, 0] + ny * tones[SUN, 1] + nz * tones[SUN, 2]
     if material == _FOLIAGE:  # leaves let some light through
-        slant = 0.3 + 0.7 * slant
+        slant = max(0.3 + 0.7 * slant, -0.45 * slant)
     lit = 0.0
     if slant > 0.0:
         lit = sunlight_at(
@@ -432,7 +487,7 @@ def _surface(
         blue
         * (near_ground * (tones[BOUNCE, 2] + up * (tones[SKYLIGHT, 2] - tones[BOUNCE, 2])) + lit * tones[SUNLIGHT, 2]),
     )
-    if material == _GLASS or material == _FACADE_GLASS or material == _WATER or material == _PAINT:
+    if material in (_GLASS, _FACADE_GLASS, _WATER, _PAINT):
         graze = 1.0 - max(facing, 0.0)
         graze *= graze
         graze *= graze
@@ -443,7 +498,7 @@ def _surface(
     return _hazed(tones, haze_m, colour, distance, dx, dy, dz)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def shade(
     surfaces: Surfaces,
     looks: GroundLooks,
@@ -454,30 +509,30 @@ def shade(
     canvas: Canvas,
     curve: NDArray[np.uint8],
     wanted: NDArray[np.uint8],
+    owners: NDArray[np.int32],
+    triangles: NDArray[np.int32],
     picture: NDArray[np.uint8],
 ) -> bool:
     """Set the picture, shape (height, width, 3); return whether all shadow tiles that it needs were there.
 
     The samples of a pixel that show the same triangle are shaded together, in their middle.
     """
-    # Arrays by themselves: numba counts references to what it takes out of a tuple, each time.
     faces, stands = surfaces.faces, surfaces.stands
     codes, corner, materials, colours = looks.codes, looks.corner, looks.materials, looks.colours
     averages, layout = looks.averages, looks.layout
     texels, starts, per_metre, size = textures.texels, textures.starts, textures.per_metre, textures.side
     tones, clouds = light.tones, light.clouds
+    haze_m, shadow, soft, wetness, lamps = light.haze_m, light.shadow, light.soft, light.wetness, light.lamps
     frame, fine_pages, fine = maps.frame, maps.fine_pages, maps.fine
     coarse_pages, coarse = maps.coarse_pages, maps.coarse
     seen_nearness, seen_owners, seen_triangles = canvas.nearness, canvas.owners, canvas.triangles
     eye, axes = view.eye, view.axes
-    samples = view.samples
+    samples, focal, centre_x, centre_y = view.samples, view.focal, view.centre_x, view.centre_y
     count = samples * samples
-    pixel = samples / view.focal
+    pixel = samples / focal
     ahead_x, ahead_y, ahead_z = axes[2, 0], axes[2, 1], axes[2, 2]
-    owners = np.empty(4, np.int64)
-    triangles = np.empty(4, np.int64)
     scale = (curve.shape[0] - 1) / (4.0 * count)
-    per_focal = 1.0 / view.focal
+    per_focal = 1.0 / focal
     last = curve.shape[0] - 1
     for y in range(picture.shape[0]):
         for x in range(picture.shape[1]):
@@ -500,8 +555,8 @@ def shade(
                         nearness += seen_nearness[row, column]
                         same += 1.0
                 per_same = 1.0 / same
-                across = (middle_x * per_same + 0.5 - view.centre_x) * per_focal
-                down = (middle_y * per_same + 0.5 - view.centre_y) * per_focal
+                across = (middle_x * per_same + 0.5 - centre_x) * per_focal
+                down = (middle_y * per_same + 0.5 - centre_y) * per_focal
                 dx = ahead_x + across * axes[0, 0] + down * axes[1, 0]
                 dy = ahead_y + across * axes[0, 1] + down * axes[1, 1]
                 dz = ahead_z + across * axes[0, 2] + down * axes[1, 2]
@@ -516,6 +571,24 @@ def shade(
                     py = eye[1] + dy * distance
                     pz = eye[2] + dz * distance
                     if owners[k] == GROUND:
+                        mirror = (0.0, 0.0, 0.0, 0.0)
+                        if wetness > 0.0:
+                            mirror = _mirror_image(
+                                seen_nearness,
+                                seen_owners,
+                                picture,
+                                samples,
+                                eye,
+                                axes,
+                                focal,
+                                centre_x,
+                                centre_y,
+                                px,
+                                py,
+                                dx,
+                                dy,
+                                -dz,
+                            )
                         colour = _ground(
                             codes,
                             corner,
@@ -529,16 +602,17 @@ def shade(
                             size,
                             tones,
                             clouds,
-                            light.haze_m,
-                            light.shadow,
-                            light.soft,
-                            light.wetness,
+                            haze_m,
+                            shadow,
+                            soft,
+                            wetness,
                             frame,
                             fine_pages,
                             fine,
                             coarse_pages,
                             coarse,
                             wanted,
+                            mirror,
                             px,
                             py,
                             distance,
@@ -557,10 +631,10 @@ def shade(
                             size,
                             tones,
                             clouds,
-                            light.haze_m,
-                            light.shadow,
-                            light.soft,
-                            light.lamps,
+                            haze_m,
+                            shadow,
+                            soft,
+                            lamps,
                             frame,
                             fine_pages,
                             fine,

@@ -10,9 +10,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from reasoned_explorer.rendering.compiling import inlined, kernel
 from reasoned_explorer.rendering.library import Library
 from reasoned_explorer.rendering.scene import Instances
 
@@ -49,7 +49,7 @@ class ShadowMaps(NamedTuple):
     coarse: NDArray[np.uint16]
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _filtered(tiles: NDArray[np.uint16], page: int, u: float, v: float, height: int) -> float:
     """The share of 3 × 3 texels around a point (in texels) that nothing higher than ``height`` darkens, smoothly."""
     left, low = math.floor(u), math.floor(v)
@@ -70,7 +70,7 @@ def _filtered(tiles: NDArray[np.uint16], page: int, u: float, v: float, height: 
     return total * (1.0 / 9.0)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def sunlight_at(
     frame: NDArray[np.float64],
     fine_pages: NDArray[np.int32],
@@ -139,15 +139,15 @@ def sunlight_at(
     return share
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy", forceinline=True)
+@inlined
 def _cast_triangle(corners: NDArray[np.float64], a: int, b: int, c: int, tile: NDArray[np.uint16]) -> None:
     """Raise a tile's heights by a triangle, half a texel wider than it is so that thin things have shadows too."""
     xa, ya, za = corners[a, 0], corners[a, 1], corners[a, 2]
     xb, yb, zb = corners[b, 0], corners[b, 1], corners[b, 2]
     xc, yc, zc = corners[c, 0], corners[c, 1], corners[c, 2]
     side = tile.shape[0]
-    first_x, last_x = math.ceil(min(xa, min(xb, xc)) - 1.0), math.floor(max(xa, max(xb, xc)))
-    first_y, last_y = math.ceil(min(ya, min(yb, yc)) - 1.0), math.floor(max(ya, max(yb, yc)))
+    first_x, last_x = math.ceil(min(xa, xb, xc) - 1.0), math.floor(max(xa, xb, xc))
+    first_y, last_y = math.ceil(min(ya, yb, yc) - 1.0), math.floor(max(ya, yb, yc))
     if first_x >= side or last_x < 0 or first_y >= side or last_y < 0:
         return
     area = (xb - xa) * (yc - ya) - (xc - xa) * (yb - ya)
@@ -155,7 +155,7 @@ def _cast_triangle(corners: NDArray[np.float64], a: int, b: int, c: int, tile: N
         xb, yb, zb, xc, yc, zc = xc, yc, zc, xb, yb, zb
         area = -area
     first_x, last_x, first_y, last_y = max(first_x, 0), min(last_x, side - 1), max(first_y, 0), min(last_y, side - 1)
-    low, high = min(za, min(zb, zc)), max(za, max(zb, zc))
+    low, high = min(za, zb, zc), max(za, zb, zc)
     if area < 1e-9:  # seen from its edge: a line
         slope_x, slope_y = 0.0, 0.0
         za = high
@@ -177,11 +177,10 @@ def _cast_triangle(corners: NDArray[np.float64], a: int, b: int, c: int, tile: N
                 continue
             z = min(max(za + slope_x * (x - xa) + slope_y * (y - ya), low), high)
             height = int(min(z, 650.0) * _PER_METRE) + 1 if z > 0.0 else 0
-            if height > tile[row, column]:
-                tile[row, column] = height
+            tile[row, column] = max(tile[row, column], height)
 
 
-@njit(nogil=True, cache=True, fastmath=False, error_model="numpy")
+@kernel
 def cast(
     library: Library,
     instances: Instances,

@@ -2,7 +2,7 @@
 
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,9 +44,9 @@ class ShadowTiles:
         """Length of the array in which the shader notes what it misses."""
         return 1 + self._fine.table.size + self._coarse.table.size
 
-    def shading(self) -> "contextmanager[None]":
+    def shading(self) -> AbstractContextManager[None]:
         """Return a context in which no tile is thrown away."""
-        return self._gate.shared()  # type: ignore[return-value]
+        return self._gate.shared()
 
     def make(self, wanted: NDArray[np.uint8]) -> None:
         """Make the tiles that the shader missed (see `sunlight_at`)."""

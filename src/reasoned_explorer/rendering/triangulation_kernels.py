@@ -48,35 +48,41 @@ def _meet(points: Ints, a: int, b: int, c: int, d: int) -> bool:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _looks_inside(points: Ints, before: int, at: int, after: int, towards: int, along: bool) -> bool:
-    """Return whether a direction leads from a corner into the polygon on its left, or (``along``) along its edge."""
+def _lie_along(points: Ints, a: int, b: int, c: int, d: int) -> bool:
+    """Return whether the first segment lies on the second."""
+    if _turn(points, c, d, a) != 0 or _turn(points, c, d, b) != 0:
+        return False
+    return _between(points, a, c, d) and _between(points, b, c, d)
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _looks_inside(points: Ints, before: int, at: int, after: int, towards: int, least: int) -> bool:
+    """Return whether a direction leads from a corner into the polygon on its left; with ``least`` 0 along its edge."""
     if _turn(points, before, at, after) > 0:
-        least = 0 if along else 1
         return _turn(points, at, towards, before) >= least and _turn(points, towards, at, after) >= least
     return not (_turn(points, at, towards, after) >= 0 and _turn(points, towards, at, before) >= 0)
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _bridge(points: Ints, corner: Ints, after: Ints, before: Ints, loop: int, size: int, hole: int, along: bool) -> int:
+def _bridge(points: Ints, corner: Ints, after: Ints, before: Ints, size: int, hole: int, least: int) -> int:
     """Return the loop's node that is nearest to a hole's corner and sees it, or -1.
 
-    Where a hole touches the outline, it may only be seen ``along`` an edge.
+    Where a hole touches the outline, it may only be seen along an edge: with ``least`` 0.
 
     Args:
         points: Shape (n, 2).
         corner: The point of each node.
         after: The next node on its ring, of all rings.
         before: The one before.
-        loop: A node of the loop.
         size: How many nodes there are, on all rings.
         hole: The node of the hole that looks.
-        along: Whether it may look along an edge.
+        least: 1, or 0 if it may look along an edge.
     """
     tried = np.zeros(size, np.bool_)
     eye = corner[hole]
     while True:
         nearest, gap = -1, np.int64(0)
-        node = loop
+        node = 0
         while True:
             p = corner[node]
             if not tried[node] and points[p, 0] >= points[eye, 0]:
@@ -84,17 +90,18 @@ def _bridge(points: Ints, corner: Ints, after: Ints, before: Ints, loop: int, si
                 if nearest < 0 or far < gap:
                     nearest, gap = node, far
             node = after[node]
-            if node == loop:
+            if node == 0:
                 break
         if nearest < 0:
             return -1
         tried[nearest] = True
         p = corner[nearest]
-        if not _looks_inside(points, corner[before[nearest]], p, corner[after[nearest]], eye, along):
+        if not _looks_inside(points, corner[before[nearest]], p, corner[after[nearest]], eye, least):
             continue
         blocked = False
         for other in range(size):
-            if _meet(points, p, eye, corner[other], corner[after[other]]):
+            one, two = corner[other], corner[after[other]]
+            if _meet(points, p, eye, one, two) or (least > 0 and _lie_along(points, p, eye, one, two)):
                 blocked = True
                 break
         if not blocked:
@@ -114,29 +121,50 @@ def _is_ear(points: Ints, corner: Ints, after: Ints, before: Ints, node: int, st
         p = corner[other]
         if low_x <= points[p, 0] <= high_x and low_y <= points[p, 1] <= high_y:
             one, two, three = _turn(points, a, b, p), _turn(points, b, c, p), _turn(points, c, a, p)
-            inside = one > 0 and two > 0 and three > 0
-            touches = one >= 0 and two >= 0 and three >= 0
-            if inside or (
-                touches
-                and not strict
-                and not _same(points, p, a)
-                and not _same(points, p, b)
-                and not _same(points, p, c)
-            ):
+            if one > 0 and two > 0 and three > 0:
                 return False
+            if one >= 0 and two >= 0 and three >= 0 and not strict:
+                if _same(points, p, b):
+                    # A ring that touches here must not run into the triangle, and out across the cut.
+                    for q in (corner[before[other]], corner[after[other]]):
+                        if _turn(points, a, b, q) > 0 and _turn(points, b, c, q) > 0:
+                            return False
+                elif not _same(points, p, a) and not _same(points, p, c):
+                    return False
         other = after[other]
     return True
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _cut_ears(
-    points: Ints, corner: Ints, after: Ints, before: Ints, loop: int, left: int, triangles: Ints, made: int
-) -> int:
-    """Cut a loop of ``left`` nodes into triangles and return how many there are now.
+def _without_spikes(points: Ints, corner: Ints, after: Ints, before: Ints, node: int, left: int) -> tuple[int, int]:
+    """Take a node out where the loop turns back on itself or stands still, and those before it where that makes more.
+
+    Returns:
+        A node that stays, and how many nodes are left.
+    """
+    while left > 2:
+        a, b, c = corner[before[node]], corner[node], corner[after[node]]
+        back = (points[a, 0] - points[b, 0]) * (points[c, 0] - points[b, 0]) + (points[a, 1] - points[b, 1]) * (
+            points[c, 1] - points[b, 1]
+        )
+        if back < 0 or _turn(points, a, b, c) != 0:
+            break
+        after[before[node]], before[after[node]] = after[node], before[node]
+        node = before[node]
+        left -= 1
+    return node, left
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _cut_ears(points: Ints, corner: Ints, after: Ints, before: Ints, left: int, triangles: Ints) -> int:
+    """Cut the loop of ``left`` nodes into triangles and return how many there are.
 
     Where no ear is found, which a proper polygon does not let happen, ever worse ones are taken: it always ends.
     """
-    node, idle, patience = loop, 0, 0
+    node, idle, patience, made = before[0], 0, 0, 0
+    for _ in range(left):
+        node, left = _without_spikes(points, corner, after, before, node, left)
+        node = after[node]
     while left > 2:
         a, b, c = corner[before[node]], corner[node], corner[after[node]]
         if patience < 2:
@@ -152,11 +180,12 @@ def _cut_ears(
         if _turn(points, a, b, c) > 0:
             triangles[made, 0], triangles[made, 1], triangles[made, 2] = a, b, c
             made += 1
-        after[before[node]] = after[node]
-        before[after[node]] = before[node]
-        # On to the node after the next: fewer needles than cutting fans.
-        node = after[after[node]]
+        after[before[node]], before[after[node]] = after[node], before[node]
         left -= 1
+        node, left = _without_spikes(points, corner, after, before, before[node], left)
+        # On to the node after the next: fewer needles than cutting fans.
+        node, left = _without_spikes(points, corner, after, before, after[node], left)
+        node = after[node]
         idle = patience = 0
     return made
 
@@ -177,12 +206,15 @@ def _link_rings(ring_starts: Ints, first: int, beyond: int, corner: Ints, after:
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _rightmost(points: Ints, corner: Ints, begin: int, end: int) -> int:
-    best = begin
-    for node in range(begin + 1, end):
-        if points[corner[node], 0] > points[corner[best], 0]:
-            best = node
-    return best
+def _next_eye(points: Ints, ring_starts: Ints, first: int, beyond: int, corner: Ints, merged: Bools) -> tuple[int, int]:
+    """Return the rightmost node of all holes that are not merged yet, and its ring."""
+    eye, found = -1, -1
+    for ring in range(first + 1, beyond):
+        if not merged[ring - first]:
+            for node in range(ring_starts[ring] - ring_starts[first], ring_starts[ring + 1] - ring_starts[first]):
+                if eye < 0 or points[corner[node], 0] > points[corner[eye], 0]:
+                    eye, found = node, ring
+    return eye, found
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
@@ -204,23 +236,22 @@ def triangulate_all(points: Ints, ring_starts: Ints, polygon_starts: Ints) -> tu
     made = 0
     for polygon in range(polygons):
         first, beyond = polygon_starts[polygon], polygon_starts[polygon + 1]
-        rings = beyond - first
-        room = 1 if rings == 0 else ring_starts[beyond] - ring_starts[first] + 2 * rings
+        starts[polygon + 1] = made
+        if first == beyond:
+            continue
+        room = ring_starts[beyond] - ring_starts[first] + 2 * (beyond - first)
         corner, after, before = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
-        size = _link_rings(ring_starts, first, beyond, corner, after, before) if rings > 0 else 0
-        left = ring_starts[first + 1] - ring_starts[first] if rings > 0 else 0
-        eyes = np.empty(max(rings - 1, 0), np.int64)
-        reach = np.empty(max(rings - 1, 0), np.int64)
-        for hole in range(rings - 1):
-            begin = ring_starts[first + hole + 1] - ring_starts[first]
-            end = ring_starts[first + hole + 2] - ring_starts[first]
-            eyes[hole] = _rightmost(points, corner, begin, end)
-            reach[hole] = -points[corner[eyes[hole]], 0]
-        for hole in np.argsort(reach, kind="mergesort"):
-            eye = eyes[hole]
-            seen = _bridge(points, corner, after, before, 0, size, eye, False)
-            if seen < 0:
-                seen = _bridge(points, corner, after, before, 0, size, eye, True)
+        size = _link_rings(ring_starts, first, beyond, corner, after, before)
+        left = ring_starts[first + 1] - ring_starts[first]
+        merged = np.zeros(beyond - first, np.bool_)
+        for _ in range(first + 1, beyond):
+            eye, ring = _next_eye(points, ring_starts, first, beyond, corner, merged)
+            merged[ring - first] = True
+            seen = -1
+            # A loop, since numba compiles a function once more for every constant that it is given.
+            for least in (1, 0):
+                if seen < 0:
+                    seen = _bridge(points, corner, after, before, size, eye, least)
             if seen < 0:
                 continue
             # Out along the bridge, around the hole, and back on doubles of both ends.
@@ -230,9 +261,8 @@ def triangulate_all(points: Ints, ring_starts: Ints, polygon_starts: Ints) -> tu
             after[size + 1], before[after[seen]] = after[seen], size + 1
             after[seen], before[eye] = eye, seen
             size += 2
-            left += ring_starts[first + hole + 2] - ring_starts[first + hole + 1] + 2
-        if left > 2:
-            made = _cut_ears(points, corner, after, before, 0, left, triangles, made)
+            left += ring_starts[ring + 1] - ring_starts[ring] + 2
+        made += _cut_ears(points, corner, after, before, left, triangles[made:])
         starts[polygon + 1] = made
     return triangles[:made], starts
 
@@ -289,7 +319,8 @@ def tidy_rings(points: Ints, ring_starts: Ints, is_hole: Bools, slack: int, leas
         if count < 3 or abs(twice) < 2 * least_area:
             count = 0
         elif (twice > 0) == is_hole[ring]:
-            kept[:count] = kept[:count][::-1].copy()
+            for at in range(count // 2):
+                kept[at], kept[count - 1 - at] = kept[count - 1 - at], kept[at]
         size += count
         starts[ring + 1] = size
     return found[:size], starts

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reasoned_explorer.rendering.lettering import Plane, disc, facing_front, facing_side, rectangle
+from reasoned_explorer.rendering.lettering import Plane, disc, facing_back, facing_front, facing_side, rectangle
 from reasoned_explorer.rendering.mesh_builder import FAR, MeshBuilder
 from reasoned_explorer.rendering.models.maker import Maker
 from reasoned_explorer.rendering.models.palette import BLACK, GLASS, PAINT, RUBBER, SIGN_RED, SIGN_WHITE, STEEL, plain
@@ -113,7 +113,7 @@ def _belt_at(body: _Body, y: float) -> float:
 
 def _lower(builder: MeshBuilder, body: _Body) -> None:
     """The body up to the windows: rounded sections from tail to nose."""
-    stations = body.belt if builder.detail <= 1 else [body.belt[k] for k in (0, 1, 2, 5, 6, 7)]
+    stations = body.belt if builder.detail <= 1 else [body.belt[k] for k in (1, 2, 5, 6)]
     rings = []
     for y, z in stations:
         end = abs(y) / 2.2
@@ -158,19 +158,22 @@ def _upper(builder: MeshBuilder, body: _Body) -> None:
     builder.loft(PAINT, roof if builder.detail <= 1 else [roof[0], roof[2]], smooth=builder.detail == 0)
     if body.closed_m > -3.0:
         _panels(builder, ring(0.0, 0.012), ring(1.0, 0.012), body)
-    thick = 0.07
-    bottom, top = ring(0.0), ring(1.0)
-    for corner in range(4):
-        builder.beam(PAINT, bottom[corner], top[corner], thick, thick, up=(1, 0, 0))
     if builder.detail <= 1:
-        for side in (-1, 1):
-            foot = (side * low, body.post, _belt_at(body, body.post) - 0.03)
-            builder.beam(PAINT, foot, (side * high, body.post, eave), 0.09, 0.05, up=(side, 0, 0.3))
-    if builder.detail == 0:
-        for side in (-1, 1):
-            for share in (0.0, 1.0):
-                start, end = ring(share)[1 if side > 0 else 0], ring(share)[2 if side > 0 else 3]
-                builder.beam(PAINT, start, end, 0.05, 0.06, up=(side, 0, 0.3))
+        _posts(builder, body, ring(0.0), ring(1.0))
+
+
+def _posts(
+    builder: MeshBuilder, body: _Body, low: list[tuple[float, float, float]], high: list[tuple[float, float, float]]
+) -> None:
+    """The posts at the corners of the windows and between the doors, and the roof's edge."""
+    for corner in range(4):
+        builder.beam(PAINT, low[corner], high[corner], 0.07, 0.07, up=(1, 0, 0))
+    for side in (-1, 1):
+        foot = (side * abs(low[0][0]), body.post, _belt_at(body, body.post) - 0.03)
+        builder.beam(PAINT, foot, (side * abs(high[0][0]), body.post, high[0][2]), 0.09, 0.05, up=(side, 0, 0.3))
+        for ring in (low, high) if builder.detail == 0 else ():
+            start, end = ring[1 if side > 0 else 0], ring[2 if side > 0 else 3]
+            builder.beam(PAINT, start, end, 0.05, 0.06, up=(side, 0, 0.3))
 
 
 def _panels(
@@ -208,10 +211,14 @@ def _wheel(builder: MeshBuilder, side: int, y: float) -> None:
     ]
     plane = facing_side(side * 0.892, y=y)
     builder.decal(BLACK, plane.points(arch))
-    builder.cylinder(RUBBER, (side * 0.69, y, r), (side * 0.9, y, r), r, sides=18)
-    count = builder.sides(18)
+    if builder.detail == 2:
+        plane = facing_side(side * 0.9, y=y)
+        builder.decal(RUBBER, plane.points(disc(0, r, r, sides=7)))
+        builder.decal(STEEL, facing_side(side * 0.91, y=y).points(disc(0, r, 0.6 * r, sides=4)))
+        return
+    builder.cylinder(RUBBER, (side * 0.69, y, r), (side * 0.9, y, r), r, sides=14)
     rim = Plane((side * 0.91, y, r), plane.right)
-    builder.decal(STEEL, rim.points(disc(0, 0, 0.66 * r, sides=max(6, count))))
+    builder.decal(STEEL, rim.points(disc(0, 0, 0.66 * r, sides=max(6, builder.sides(14)))))
     if builder.detail == 0:
         hub = Plane((side * 0.916, y, r), plane.right)
         for spoke in range(5):
@@ -224,10 +231,19 @@ def _ends(builder: MeshBuilder, body: _Body) -> None:
     """Lamps, plates, grille and bumpers."""
     nose, tail = body.belt[-2][1], body.belt[1][1]
     for side in (-1, 1):
+        if builder.detail == 2:
+            lamp = facing_front(body.belt[-2][0] + 0.012).points(rectangle(side * 0.6, nose - 0.1, 0.32, 0.13))
+            builder.decal(_LAMP, lamp)
+            builder.decal(
+                SIGN_RED, facing_back(body.belt[1][0] - 0.012).points(rectangle(side * 0.62, tail - 0.17, 0.26, 0.22))
+            )
+            continue
         builder.box(_LAMP, _low(side * 0.62, 0.16, 2.0, nose - 0.16), _high(side * 0.62, 0.16, 2.17, nose - 0.03))
         builder.box(
             SIGN_RED, _low(side * 0.66, 0.13, -2.185, tail - 0.28), _high(side * 0.66, 0.13, -2.05, tail - 0.06)
         )
+    if builder.detail == 2:
+        return
     builder.box(_PLASTIC, (-0.42, 2.1, nose - 0.2), (0.42, 2.19, nose - 0.06))
     builder.box(_PLASTIC, (-0.76, 2.0, 0.26), (0.76, 2.2, 0.42), bevel=0.03)
     builder.box(_PLASTIC, (-0.76, -2.2, 0.28), (0.76, -2.0, 0.46), bevel=0.03)

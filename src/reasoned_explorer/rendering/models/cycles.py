@@ -111,7 +111,7 @@ def _wheel(builder: MeshBuilder, y: float) -> None:
 def _far_bicycle(builder: MeshBuilder, frame: Surface, x: float = 0.0, *, size: float = 1.0) -> None:
     """A bicycle for afar: twelve triangles or so, seen from both sides."""
     r = _WHEEL_M
-    grey = plain(0.44, 0.44, 0.45)
+    grey = plain(0.36, 0.36, 0.37)
     for y in (_REAR_Y, _FRONT_Y):
         corners = [(y, 0.0), (y + r, r), (y, 2 * r), (y - r, r)]
         builder.sheet(grey, [(x, v * size, w * size) for v, w in corners])
@@ -153,7 +153,10 @@ def _bicycle_parking(builder: MeshBuilder, variant: int) -> None:
             builder.box(DARK_STEEL, (-1.5, y - 0.03, 0), (1.5, y + 0.03, 0.03))
     for place, x in enumerate(places):
         bicycle = MeshBuilder(detail=min(2, builder.detail + (len(places) > 2)))
-        add_bicycle(bicycle, frames[place], low_step=place % 2 == 1, basket=place == 2)
+        if builder.detail < 2:
+            add_bicycle(bicycle, frames[place], low_step=place % 2 == 1, basket=place == 2)
+        else:
+            _far_bicycle(bicycle, frames[place])
         builder.add(bicycle, (x, 0.12 * (-1) ** place, 0), heading_rad=math.pi * (place % 2), scale=scale)
 
 
@@ -163,7 +166,7 @@ def _hoop(builder: MeshBuilder, x: float) -> None:
     corner = [(0.38 - 0.14 * (1 - math.sin(a)), 0.68 + 0.14 * math.cos(a)) for a in np.linspace(math.pi / 2, 0, steps)]
     half = [(0.38, 0.0), *corner]
     points = [(x, y, z) for y, z in half] + [(x, -y, z) for y, z in reversed(half)]
-    builder.tube(STEEL, points, 0.026, sides=6 if builder.detail == 0 else 9)
+    builder.tube(STEEL, points, 0.026, sides=6 if builder.detail == 0 else 5)
 
 
 def _bicycle_rental(builder: MeshBuilder, variant: int) -> None:
@@ -181,7 +184,7 @@ def _bicycle_rental(builder: MeshBuilder, variant: int) -> None:
     builder.box(DARK_STEEL, (-4.0, -0.55, 0), (-3.2, 1.0, 0.05))
     bicycle = MeshBuilder(detail=min(2, builder.detail + 1))
     if builder.detail < 2:
-        add_bicycle(bicycle, livery, low_step=True, basket=builder.detail == 0)
+        add_bicycle(bicycle, livery, low_step=True, basket=True)
     else:
         _far_bicycle(bicycle, livery)
     for place, x in enumerate(docks.tolist()):

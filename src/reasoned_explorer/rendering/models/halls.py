@@ -238,8 +238,8 @@ def _cross_on(builder: MeshBuilder, surface: Surface) -> None:
 
 
 MAKERS = {
-    "hotel": Maker(_hotel, variants=2, depth="wall"),
-    "museum": Maker(_museum, variants=2, depth="wall"),
-    "library": Maker(_library, variants=2, depth="wall"),
-    "church": Maker(_church, variants=2, depth="wall"),
+    "hotel": Maker(_hotel, variants=2, relief_m=0.142),
+    "museum": Maker(_museum, variants=2, relief_m=0.148),
+    "library": Maker(_library, variants=2, relief_m=0.154),
+    "church": Maker(_church, variants=2, relief_m=0.160),
 }

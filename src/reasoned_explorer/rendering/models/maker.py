@@ -25,7 +25,9 @@ class Maker:
         fits: ``"all"``: every level is drawn out to exactly the class's size. ``"height"``: only upward; it may reach
             beyond on the sides (a lamp's arm above people's heads). ``"none"``: it keeps its own size (a child, a
             climbing frame on a playground). Coarse levels always have the extent of the finest.
-        depth: ``"centred"``, or ``"wall"`` for fronts that begin at a wall at y = 0.
+        relief_m: For fronts, which begin at a wall at y = 0: how much thicker they are made, so that they cover door
+            frames and sills of the wall. It differs from class to class, so that no two fronts that overlap lie in one
+            plane. 0 for what stands free, about x = y = 0.
     """
 
     make: Callable[[MeshBuilder, int], None]
@@ -33,7 +35,7 @@ class Maker:
     tints: tuple[Colour, ...] = UNTINTED
     scaling: str = "axes"
     fits: str = "all"
-    depth: str = "centred"
+    relief_m: float = 0.0
 
     def model(self, variant: int, size_m: tuple[float, float, float]) -> Model:
         """Return a variant, counted round, for the class's natural size (across, ahead, up), metres."""
@@ -42,6 +44,8 @@ class Maker:
             builder = MeshBuilder(detail=detail)
             self.make(builder, variant % self.variants)
             mesh = builder.mesh()
+            if self.relief_m > 0.0:
+                mesh = _thickened(mesh, self.relief_m + 0.001 * (variant % self.variants))
             # Where a coarser level saves nothing, the one before serves again.
             levels.append(mesh if not levels or len(mesh.triangles) < len(levels[-1].triangles) else levels[-1])
         low, high = self._extent(levels[0], size_m)
@@ -57,8 +61,16 @@ class Maker:
             high[2] = size[2] if self.fits == "height" else high[2] - low[2]
             low[2] = 0.0
             return low, high
-        low = np.array([-size[0] / 2.0, 0.0 if self.depth == "wall" else -size[1] / 2.0, 0.0])
+        low = np.array([-size[0] / 2.0, 0.0 if self.relief_m > 0.0 else -size[1] / 2.0, 0.0])
         return low, low + size
+
+
+def _thickened(mesh: Mesh, relief_m: float) -> Mesh:
+    """Return a front, 0.5 m deep, with its back where it was and all else farther from the wall."""
+    vertices = mesh.vertices.copy()
+    before = vertices[:, 1] > 1e-6
+    vertices[before, 1] = relief_m + (1.0 - relief_m / 0.5) * vertices[before, 1]
+    return replace(mesh, vertices=vertices)
 
 
 def drawn_out(mesh: Mesh, low: NDArray[np.float64], high: NDArray[np.float64]) -> Mesh:

@@ -106,14 +106,12 @@ def _legs(builder: MeshBuilder, who: _Person, stride: float) -> None:
         top = np.array([x * 0.92, 0.0, hip])
         lower = _SKINS[who.looks] if who.skirt else who.legs
         sides = 8 if builder.detail == 0 else 6
+        if builder.detail == 2:
+            builder.cylinder(lower, ankle * (1, 1, 0), top, 0.06, 0.1, sides=8, capped=False)
+            continue
         builder.tube(lower, [ankle, knee, top], [0.052, 0.066, 0.092], sides=sides)
-        if builder.detail <= 1:
-            toe = (0, 0.13, -0.02) if not back else (0, 0.1, -0.08)
-            builder.beam(
-                shoe, ankle + np.array([0, -0.06, -0.045]), ankle + np.array(toe) - np.array([0, 0, 0.025]), 0.09, 0.09
-            )
-        else:
-            builder.box(shoe, (x - 0.05, y - 0.08, 0), (x + 0.05, y + 0.14, 0.1))
+        toe = (0, 0.13, -0.045) if not back else (0, 0.1, -0.105)
+        builder.beam(shoe, ankle + np.array([0, -0.06, -0.045]), ankle + np.array(toe), 0.09, 0.09)
     if who.skirt:
         reach = 0.19 + 0.25 * stride
         builder.lathe(who.legs, [(reach, 0.5), (0.17, 0.92), (0.14, 1.02)], sides=12, stretch=(1.0, 0.85))
@@ -156,6 +154,9 @@ def _arms(builder: MeshBuilder, who: _Person, stride: float) -> None:
         elbow = np.array([side * (wide + 0.035), swing * 0.35 - 0.03, 1.13])
         wrist = np.array([side * (wide + 0.02), swing + 0.05, 0.88 + 0.35 * max(0.0, swing)])
         sides = 7 if builder.detail == 0 else 5
+        if builder.detail == 2:
+            builder.cylinder(PAINT, shoulder, wrist, 0.06, 0.04, sides=8, capped=False)
+            continue
         builder.tube(PAINT, [shoulder, elbow, wrist], [0.062, 0.047, 0.036], sides=sides)
         hand = wrist + 0.06 * (wrist - elbow) / np.linalg.norm(wrist - elbow)
         if builder.detail <= 1:
@@ -165,6 +166,10 @@ def _arms(builder: MeshBuilder, who: _Person, stride: float) -> None:
 def _head(builder: MeshBuilder, who: _Person) -> None:
     skin, hair = _SKINS[who.looks], _HAIRS[who.looks]
     big = 1.14 if who.build == "child" else 1.0
+    if builder.detail == 2:
+        builder.sphere(skin, (0, 0.03, 1.6), (0.07 * big, 0.085 * big, 0.14), sides=12, rings=6)
+        builder.sphere(hair, (0, -0.02, 1.66), (0.085 * big, 0.09 * big, 0.09), sides=12, rings=5)
+        return
     builder.cylinder(skin, (0, 0.0, 1.44), (0, 0.015, 1.57), 0.052, sides=8, capped=False)
     builder.sphere(skin, (0, 0.025, 1.62), (0.075 * big, 0.092 * big, 0.112), sides=12, rings=8)
     builder.sphere(hair, (0, -0.005, 1.66), (0.086 * big, 0.1 * big, 0.09), sides=12, rings=6)

@@ -239,11 +239,11 @@ def _atm(builder: MeshBuilder, variant: int) -> None:
 
 
 MAKERS = {
-    "cafe": Maker(_cafe, variants=2, depth="wall"),
-    "restaurant": Maker(_restaurant, variants=2, depth="wall"),
-    "bar": Maker(_bar, variants=2, depth="wall"),
-    "shop": Maker(_shop, variants=len(_SHOPS), depth="wall"),
-    "toilets": Maker(_toilets, depth="wall"),
-    "pharmacy": Maker(_pharmacy, depth="wall"),
-    "atm": Maker(_atm, variants=2, depth="wall"),
+    "cafe": Maker(_cafe, variants=2, relief_m=0.100),
+    "restaurant": Maker(_restaurant, variants=2, relief_m=0.106),
+    "bar": Maker(_bar, variants=2, relief_m=0.112),
+    "shop": Maker(_shop, variants=len(_SHOPS), relief_m=0.118),
+    "toilets": Maker(_toilets, relief_m=0.124),
+    "pharmacy": Maker(_pharmacy, relief_m=0.130),
+    "atm": Maker(_atm, variants=2, relief_m=0.136),
 }

@@ -61,8 +61,10 @@ def _slide(builder: MeshBuilder, variant: int) -> None:
     """A ladder, a platform with rails and a chute that ends level; it goes down to +x."""
     chute, frame = ((SIGN_YELLOW, SIGN_RED), (STEEL, SIGN_BLUE))[variant]
     path = [(-0.75, 1.45), (0.9, 0.42), (1.35, 0.27), (1.75, 0.25)]
+    if builder.detail == 2:
+        path = [path[0], path[1], path[3]]
     if builder.detail == FAR:
-        for (x0, z0), (x1, z1) in ((path[0], path[1]), (path[1], path[3])):
+        for (x0, z0), (x1, z1) in ((path[0], path[1]), (path[1], path[-1])):
             builder.sheet(chute, [(x0, -0.3, z0), (x1, -0.3, z1), (x1, 0.3, z1), (x0, 0.3, z0)])
         builder.sheet(frame, [(-1.75, -0.4, 0), (-1.75, 0.4, 0), (-1.3, 0.4, 2.2), (-1.3, -0.4, 2.2)])
         builder.card(frame, (-0.75, 0, 0), 0.7, 1.45, math.pi / 2)
@@ -76,12 +78,13 @@ def _slide(builder: MeshBuilder, variant: int) -> None:
         builder.beam(frame, (-1.38, y, 1.4), (-1.38, y, 2.15), 0.06, 0.06, up=(1, 0, 0))
         builder.beam(frame, (-0.78, y, 0), (-0.78, y, 2.15), 0.06, 0.06, up=(1, 0, 0))
         builder.beam(frame, (-1.42, y * 1.1, 2.16), (-0.74, y * 1.1, 2.16), 0.08, 0.08)
-        builder.beam(frame, (-1.38, y, 1.8), (-0.78, y, 1.8), 0.04, 0.04)
-        builder.beam(frame, (1.2, y, 0), (1.2, y, 0.3), 0.05, 0.05, up=(1, 0, 0))
+        if builder.detail == 0:
+            builder.beam(frame, (-1.38, y, 1.8), (-0.78, y, 1.8), 0.04, 0.04)
+            builder.beam(frame, (1.2, y, 0), (1.2, y, 0.3), 0.05, 0.05, up=(1, 0, 0))
     for (x0, z0), (x1, z1) in pairwise(path):
         builder.beam(chute, (x0, 0, z0), (x1, 0, z1), 0.62, 0.04)
     builder.box(PALE_WOOD, (-1.42, -0.34, 1.41), (-0.72, 0.34, 1.47))
-    rungs = (5, 5, 3)[builder.detail]
+    rungs = (5, 4, 1)[builder.detail]
     for rung in range(rungs):
         share = (rung + 1) / (rungs + 0.6)
         x, z = -1.72 + 0.34 * share, 1.48 * share

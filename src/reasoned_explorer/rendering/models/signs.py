@@ -152,14 +152,17 @@ def _walker(builder: MeshBuilder, plane: Plane, foot: tuple[float, float], heigh
         builder.decal(BLACK, plane.points(rectangle(u + 0.17 * k * place, v, 0.1 * k, 0.06 * k)))
 
 
+#: By level of detail: darker where the hoods and their shade are left out.
+_YELLOW_HOUSING = (SIGN_YELLOW, SIGN_YELLOW, plain(0.70, 0.57, 0.08), plain(0.48, 0.40, 0.07))
+
+
 def _traffic_signals(builder: MeshBuilder, variant: int) -> None:
     """A mast with a black head of three lights, red, amber and green; one of them is lit."""
     lit = variant % 2  # red or green
-    housing = (plain(0.07, 0.08, 0.08), plain(0.07, 0.08, 0.08), SIGN_YELLOW)[variant]
+    housing = (plain(0.07, 0.08, 0.08), plain(0.07, 0.08, 0.08), _YELLOW_HOUSING[builder.detail])[variant]
     if builder.detail == FAR:
         builder.cylinder(DARK_STEEL, (0, -0.06, 0), (0, -0.06, 2.3), 0.05, sides=10, capped=False)
-        far_housing = plain(0.48, 0.40, 0.07) if housing is SIGN_YELLOW else housing
-        builder.box(far_housing, (-0.17, -0.17, 2.2), (0.17, 0.17, 3.2))
+        builder.box(housing, (-0.17, -0.17, 2.2), (0.17, 0.17, 3.2))
         builder.decal(_lamp("red", lit == 0), facing_front(0.18).points(rectangle(0, 3.0, 0.22, 0.22)))
         builder.decal(_lamp("green", lit == 1), facing_front(0.18).points(rectangle(0, 2.4, 0.22, 0.22)))
         return
@@ -200,7 +203,7 @@ def _information(builder: MeshBuilder, variant: int) -> None:
     if builder.detail == FAR:
         for x in (-0.52, 0.52):
             builder.card(post, (x, 0, 0), 0.08, 1.0)
-        builder.sheet(SIGN_WHITE, facing_front(0.0).points(rectangle(0, 1.25, 1.1, 0.9)))
+        builder.sheet(SIGN_WHITE, facing_front(0.0).points(rectangle(0, 1.25, 0.9, 0.84)))
         builder.box(SIGN_BLUE if variant == 0 else DARK_WOOD, (-0.6, -0.1, 1.72), (0.6, 0.1, 2.0))
         return
     for x in (-0.54, 0.54):

@@ -34,6 +34,9 @@ def _fire_hydrant(builder: MeshBuilder, variant: int) -> None:
         builder.sheet(caps, [(0, -0.175, 0.42), (0, 0.175, 0.42), (0, 0.175, 0.56), (0, -0.175, 0.56)])
         return
     profile = [(0.165, 0.0), (0.165, 0.045), (0.115, 0.06), (0.105, 0.1), (0.105, 0.3), (0.1, 0.58)]
+    if builder.detail == 2:
+        _small_hydrant(builder, body, caps)
+        return
     builder.lathe(body, profile, sides=18)
     if builder.detail <= 1:
         builder.lathe(body, [(0.138, 0.29), (0.138, 0.33)], sides=18)
@@ -56,6 +59,15 @@ def _fire_hydrant(builder: MeshBuilder, variant: int) -> None:
             for reach, low, high in ((0.142, 0.04, 0.065), (0.122, 0.325, 0.345)):
                 at = (reach * east, reach * north)
                 builder.cylinder(IRON, (*at, low), (*at, high), 0.013, sides=5)
+
+
+def _small_hydrant(builder: MeshBuilder, body: Surface, caps: Surface) -> None:
+    """A hydrant for some way off, in about eighty triangles."""
+    profile = [(0.165, 0.0), (0.11, 0.06), (0.1, 0.57), (0.14, 0.59), (0.11, 0.68), (0.0, 0.76)]
+    builder.lathe(body, profile, sides=13)
+    builder.cylinder(caps, (0, 0, 0.74), (0, 0, 0.8), 0.032, sides=8, capped=False)
+    builder.cylinder(caps, (-0.175, 0, 0.47), (0.175, 0, 0.47), 0.06, sides=13)
+    builder.cylinder(caps, (0, -0.175, 0.44), (0, 0.175, 0.44), 0.08, sides=13)
 
 
 def _fountain(builder: MeshBuilder, variant: int) -> None:
