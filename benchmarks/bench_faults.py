@@ -68,13 +68,13 @@ def run_all(behaviour: Behaviour, *, missions: int, steps: int, at_once: int) ->
                 explorer=ExplorerSettings(max_steps=steps, t_max_s=86_400.0),
                 seed=number,
             )
-            desk = ModelDesk(base_url=server.base_url, asking=ASKING, known=found_out)
+            desk = ModelDesk(base_url=server.base_url, asking=ASKING, abilities=found_out)
             return Mission(GOALS[number % len(GOALS)], atlases[number % 2], settings, desk=desk).run()
 
         # What the model can do is found out once, before anything goes wrong.
         server.behaviour = Behaviour(answer=sober)
         first = ModelDesk(base_url=server.base_url, asking=ASKING)
-        found_out = first.prepare(["openai:fake"])
+        found_out = {"openai:fake": first.prepare(["openai:fake"])[0].abilities}
         server.behaviour = behaviour
         return list(pool.map(run, range(missions)))
 

@@ -116,6 +116,7 @@ class Behaviour:
         ignores_format: Answers 200 and plain text whatever form is asked for.
         on_schema: Status of the answer to a request with a JSON schema; 200 for a sound one.
         refused_parameters: Answered with 400 where a request has one.
+        on_system: Status of the answer to a request with a system; 200 for a sound one.
         tells_logprobs: Whether log-probabilities are told where they are wanted.
         tells_usage: Whether tokens are counted.
         at_once: At most so many are worked on, the others wait; None for all.
@@ -134,6 +135,7 @@ class Behaviour:
     ignores_format: bool = False
     on_schema: int = 200
     refused_parameters: frozenset[str] = frozenset()
+    on_system: int = 200
     tells_logprobs: bool = True
     tells_usage: bool = True
     at_once: int | None = None
@@ -293,13 +295,9 @@ class StubServer:
 
     async def _respond(self, request: web.Request, body: Mapping[str, Any], word: str) -> web.StreamResponse:
         behaviour = self.behaviour
-        refused = sorted(behaviour.refused_parameters & set(body))
-        if refused:
-            message = f"Unsupported parameter: '{refused[0]}' is not supported with this model."
-            return _error(400, message, code="unsupported_parameter", param=refused[0])
-        asks_schema = body.get("response_format", {}).get("type") == "json_schema"
-        if asks_schema and behaviour.on_schema != 200:
-            return _error(behaviour.on_schema, "response_format json_schema")
+        refusal = _refusal(behaviour, body)
+        if refusal is not None:
+            return refusal
         if word in _ERRORS:
             return _ERRORS[word](request)
         if word == "hang":
@@ -409,6 +407,19 @@ def sober(body: Mapping[str, Any]) -> str:
 def _place(word: str, count: int) -> dict[str, Any]:
     told = [{"token": f"{word}{rank if rank else ''}", "logprob": -0.1 - rank} for rank in range(count)]
     return {"token": word, "logprob": -0.1, "bytes": None, "top_logprobs": told}
+
+
+def _refusal(behaviour: Behaviour, body: Mapping[str, Any]) -> web.Response | None:
+    refused = sorted(behaviour.refused_parameters & set(body))
+    if refused:
+        message = f"Unsupported parameter: '{refused[0]}' is not supported with this model."
+        return _error(400, message, code="unsupported_parameter", param=refused[0])
+    if behaviour.on_system != 200 and body["messages"][0]["role"] == "system":
+        return _error(behaviour.on_system, "System role not supported")
+    asks_schema = body.get("response_format", {}).get("type") == "json_schema"
+    if asks_schema and behaviour.on_schema != 200:
+        return _error(behaviour.on_schema, "response_format json_schema")
+    return None
 
 
 def _error(

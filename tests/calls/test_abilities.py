@@ -135,3 +135,14 @@ def test_one_picture_that_is_guessed_right_is_no_seeing():
             return ChatAnswer("red") if request.images else await super().ask(request)
 
     assert not probed(Guesses()).vision
+
+
+def test_one_that_only_describes_pictures_is_shown_some_and_asked_nothing_else():
+    class Describer(Server):
+        only_describes = True
+
+    server = Describer("vision")
+    found = probed(server, together=4)
+    assert all(request.images for request in server.asked)
+    assert (found.vision, found.json_object, found.top_logprobs) == (True, False, 0)
+    assert (found.calls, found.latency_s, found.parallel) == (6, 1.0, 4.0)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reasoned_explorer.calls.chat import TokenChoice
-from reasoned_explorer.calls.completion import read_completion
+from reasoned_explorer.calls.completion import read_completion, words_of_error
 
 SCALARS = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=5)
 JSON = st.recursive(
@@ -82,3 +82,24 @@ def test_log_probabilities() -> None:
     told = {"content": [{"token": "4", "logprob": -0.2, "top_logprobs": [{"token": "4", "logprob": -0.2}]}]}
     reading = read_completion(json.dumps(completion(logprobs=told)).encode())
     assert reading.tokens == (TokenChoice("4", (("4", -0.2),)),)
+
+
+SAID = {
+    "OpenAI, as the SDK hands it on": ({"message": "No such model", "code": "x"}, "No such model"),
+    "OpenAI, as it comes": ({"error": {"message": "No such model"}}, "No such model"),
+    "Ollama": ({"error": "no such model"}, "no such model"),
+    "FastAPI": ({"detail": "Server is pinned to 'a'; requested 'b'."}, "Server is pinned to 'a'; requested 'b'."),
+    "FastAPI, of a form": (
+        {"detail": [{"loc": ["body", "seed"], "msg": "not permitted", "input": {"temperature": 0}}, 7]},
+        "'seed': not permitted",
+    ),
+    "text": (" Internal Server Error\n", "Internal Server Error"),
+    "nothing": (None, ""),
+    "a number": ({"error": 5, "detail": {"message": 6}}, ""),
+}
+
+
+@pytest.mark.parametrize("who", SAID)
+def test_what_a_server_says_of_an_error(who: str) -> None:
+    body, words = SAID[who]
+    assert words_of_error(body) == words

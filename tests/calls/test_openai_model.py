@@ -7,6 +7,7 @@ import logging
 import subprocess
 import sys
 from collections.abc import Coroutine
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -106,7 +107,7 @@ def test_what_passes_is_tried_again(word: str) -> None:
     ("word", "fault", "asked"),
     [
         ("hang", "timeout: no answer within", 3),
-        ("500", "server error: status 500: The server had an error", 3),
+        ("500", "server error: status 500: The server had an error", 4),  # once without a system
         ("503", "server error: status 503", 3),
         ("drop", "connection: ServerDisconnectedError", 3),
         ("half body", "connection: ", 3),
@@ -240,6 +241,31 @@ def test_a_server_that_fails_on_schemas_fails_only_there() -> None:
     assert by_schema.fault is not None
     assert by_schema.fault.startswith("server error")
     assert json.loads(by_object.text)
+
+
+@pytest.mark.parametrize("status", [400, 500])
+def test_a_model_that_knows_no_system_is_told_by_the_user(status: int) -> None:
+    async def thrice(model: OpenAIModel) -> list[ChatAnswer]:
+        first, second = await model.ask(question(0)), await model.ask(question(1))
+        # What was learned of the model holds for other ways of asking it.
+        return [first, second, await model.asking("none").ask(question(2))]
+
+    with StubServer(Behaviour(on_system=status)) as server:
+        model = model_at(server, replace(QUICK, tries=2))
+        answers = asyncio.run(thrice(model))
+    assert [answer.fault for answer in answers] == [None] * 3
+    assert [answer.retries for answer in answers] == [2 if status == 500 else 1, 0, 0]
+    assert server.received[-1].body["messages"] == [{"role": "user", "content": "You judge scenes.\n\nScene 2."}]
+
+
+def test_a_server_that_stumbles_later_is_not_taken_for_one_without_a_system() -> None:
+    async def twice(model: OpenAIModel) -> None:
+        await model.ask(question(0))
+        await model.ask(question(1))
+
+    with StubServer(Behaviour(script=("ok", *("500",) * 9))) as server:
+        asyncio.run(twice(model_at(server, replace(QUICK, tries=2))))
+    assert [each.body["messages"][0]["role"] for each in server.received] == ["system"] * 3
 
 
 def gathered(model: OpenAIModel, count: int) -> list[ChatAnswer]:

@@ -126,3 +126,42 @@ def test_a_person_who_stops_a_mission_leaves_its_calls_cancelled_on_the_tape(tmp
     lines = [json.loads(line) for line in (tmp_path / "tape").read_text().splitlines()]
     assert [line["call"]["outcome"] for line in lines[1:]] == ["cancelled"]
     assert not TapePlayer(tmp_path / "tape").complete
+
+
+def test_a_mission_that_was_broken_off_goes_on_where_it_was_and_asks_nothing_twice(tmp_path: Path) -> None:
+    def ask_all(model: FakeModel, tape: TapeRecorder, past: TapePlayer | None) -> tuple[list[ChatAnswer], Ledger]:
+        clock, ledger = MixedClock(), Ledger()
+        caller = Caller(model, clock=clock, ledger=ledger, tape=tape, past=past)
+
+        async def mission() -> list[ChatAnswer]:
+            return [await caller.ask(question(number)) for number in range(6)]
+
+        with tape:
+            return clock.run(mission()), ledger
+
+    path = tmp_path / "tape"
+    with TapeRecorder(path, about={"goal": "a bench"}) as tape:
+        for number in range(3):
+            parts = parts_of(FakeModel().fingerprint, question(number))
+            tape.add(_call(number, digest=parts.digest, parts=parts, seconds=100.0, answer=ChatAnswer("then", usd=0.5)))
+        parts = parts_of(FakeModel().fingerprint, question(3))
+        tape.add(_call(3, digest=parts.digest, parts=parts, outcome=Outcome.DENIED, answer=ChatAnswer(fault="spent")))
+    model, past = FakeModel(), TapePlayer(path)
+    answers, ledger = ask_all(model, TapeRecorder.going_on(path), past)
+    assert [answer.text for answer in answers[:3]] == ["then"] * 3
+    assert [request.key for request in model.asked] == [(3,), (4,), (5,)]
+    # They cost this mission what they cost then: time, and money that was paid once.
+    assert ledger.calls[3].started_s == pytest.approx(300.0)
+    assert [call.usd for call in ledger.calls] == [0.5, 0.5, 0.5, 0.01, 0.01, 0.01]
+    whole = TapePlayer(path)
+    assert whole.about == {"goal": "a bench"}
+    assert whole.complete
+    assert [(call.asked, call.outcome) for call in whole.calls] == [(n, Outcome.ANSWERED) for n in (0, 1, 2, 4, 5, 6)]
+    assert not list(tmp_path.glob("*.half"))
+
+
+def test_what_is_no_tape_is_not_gone_on_with(tmp_path: Path) -> None:
+    (tmp_path / "tape").write_text("no tape\n")
+    with pytest.raises(RecordError, match="is no tape"):
+        TapeRecorder.going_on(tmp_path / "tape")
+    assert [path.name for path in tmp_path.iterdir()] == ["tape"]

@@ -88,6 +88,47 @@ def test_a_spent_budget_ends_a_mission_cleanly(server: StubServer) -> None:
     assert summary.end is MissionEnd.BUDGET_SPENT
 
 
+def test_a_mission_that_the_budget_ended_goes_on_without_paying_twice(server: StubServer) -> None:
+    Path("prices.toml").write_text(
+        '[[price]]\nhost = "127.0.0.1"\nmodel = "fake"\nusd_per_million_in = 1\nusd_per_million_out = 1\n'
+        'as_of = 2026-01-01\nsource = "made up"\n'
+    )
+    there = ("--base-url", server.base_url, "--prices", "prices.toml")
+    code, shown = _run(*there, "--budget-usd", "0.005")
+    assert code == 1, shown
+    assert "--resume run/calls.tape" in shown
+    paid = len(server.received)
+    code, shown = _run(*there, "--resume", "run/calls.tape", out="on")
+    assert code in {0, 1}, shown
+    first, whole = read_record(Path("run")), read_record(Path("on"))
+    assert whole.summary is not None
+    assert whole.summary.end is not MissionEnd.BUDGET_SPENT
+    assert whole.steps[: len(first.steps) - 1] == first.steps[:-1]
+    calls = [call for step in whole.steps for call in step.calls if call.model == "openai:fake"]
+    assert paid + len(server.received) > len(calls)
+    # Only what was denied then, and what came after it, was asked; nothing was tried out again.
+    assert len(server.received) - paid < len(calls)
+    # The tape is now of the whole mission.
+    code, shown = _run(*there, "--replay", "run/calls.tape", out="again")
+    assert Path("again/record.jsonl").read_bytes() == Path("on/record.jsonl").read_bytes()
+
+
+def test_another_mission_does_not_go_on_from_a_tape(server: StubServer) -> None:
+    assert _run("--base-url", server.base_url, "--budget-minutes", "0.0001")[0] == 1
+    before = Path("run/calls.tape").read_bytes()
+    code, shown = _rex(
+        *("run", "Find me a tree", *FAST, "--minds", "openai:fake", "--base-url", server.base_url),
+        *("--resume", "run/calls.tape", "--out", "x"),
+    )
+    assert code == 2, shown
+    assert "goal is 'Find me a tree'" in shown
+    assert Path("run/calls.tape").read_bytes() == before
+    code, shown = _run("--resume", "nothing", "--record", "new", out="y")
+    assert code == 2
+    assert "there is no file nothing" in shown
+    assert "--record beside --resume" in shown
+
+
 def test_answers_are_taken_from_the_cache(server: StubServer) -> None:
     arguments = ("--base-url", server.base_url, "--cache", "answers.sqlite", "--set", "depth=0")
     assert _run(*arguments)[0] == 1
@@ -136,10 +177,9 @@ def test_what_cannot_be_is_told_at_once_and_leaves_nothing(
     assert code == 2
     for words in ("a real call takes real seconds", "--record beside --replay", "there is no file b", "-1"):
         assert words in shown
-    code, shown = _rex("run", "Find me a bench", *FAST, "--record", "a", "--captioner", "openai:fake", "--out", "x")
+    code, shown = _rex("run", "Find me a bench", *FAST, "--record", "a", "--out", "x")
     assert code == 2
     assert "--record without a model" in shown
-    assert "takes no pictures yet" in shown
     assert _run("--minds", "openai:", "--base-url", server.base_url)[0] == 2
     monkeypatch.delenv("OPENAI_API_KEY")
     code, shown = _run()

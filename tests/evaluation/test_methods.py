@@ -1,6 +1,6 @@
 import pytest
 
-from reasoned_explorer.evaluation.methods import GROUPS, method, methods, sound_methods
+from reasoned_explorer.evaluation.methods import GROUPS, method, methods, models_called, sound_methods
 from reasoned_explorer.evaluation.mission import MissionSettings
 from reasoned_explorer.evaluation.mission_settings import errors_of
 from reasoned_explorer.model import InputError, SettingsError, UnknownNameError
@@ -66,3 +66,18 @@ def test_methods_that_can_be_read_are_told_from_those_that_cannot() -> None:
     assert [item.name for item in sound_methods(names)] == ["random"]
     with pytest.raises(InputError, match=r"llm-rrt:depth: 'depth'; expected name=value(.|\n)*'nope'"):
         methods(names)
+
+
+@pytest.mark.parametrize(
+    ("roles", "visionary", "evaluator"),
+    [
+        ("openai:gpt-4o-mini/openai:gpt-4o", "openai:gpt-4o-mini", "openai:gpt-4o"),
+        ("hf:org/small/embedded", "hf:org/small", "embedded"),
+        ("embedded/hf:org/large", "embedded", "hf:org/large"),
+        ("openai:org/one/openai:org/other", "openai:org/one", "openai:org/other"),
+    ],
+)
+def test_models_stand_behind_the_at_sign_whatever_slashes_they_have(roles: str, visionary: str, evaluator: str) -> None:
+    settings = method(f"llm-rrt:depth=1@{roles}+perfect-halt").settings(BASE)
+    assert (settings.visionary, settings.evaluator) == (visionary, evaluator)
+    assert models_called([f"llm-rrt@{roles}"], BASE) == tuple(name for name in (visionary, evaluator) if ":" in name)

@@ -56,3 +56,11 @@ def test_all_faults_of_a_profile_are_told_at_once():
     with pytest.raises(SettingsError) as caught:
         LatencyProfile("bad", "", caption=RoleLatency(-1.0, 0.1), checker=RoleLatency(math.nan, 3.0))
     assert len(caught.value.faults) == 3
+
+
+def test_all_calls_may_take_the_same_seconds() -> None:
+    profile = latency_profile("0.8s")
+    assert {profile.duration_s(role, 7, 1, 2) for role in ("caption", "visionary", "evaluator", "checker")} == {0.8}
+    for wrong in ("0.8", "s", "-1s", "1e3s", "99999s"):
+        with pytest.raises(UnknownNameError):
+            latency_profile(wrong)

@@ -100,12 +100,16 @@ class _Probe:
 async def probe(model: ChatModel, *, together: int = _TOGETHER, now_s: Callable[[], float] | None = None) -> Abilities:
     """Return what a model can do, in ``6 + together`` short calls, two fewer where pictures are refused at once.
 
+    One that only describes pictures is shown ``2 + together`` of them.
+
     Args:
         model: Asked directly: nothing of this is cached or recorded.
         together: How many calls are made at once to see how many go on at once, at least 1.
         now_s: Tells seconds; the running loop's time where None.
     """
     asking = _Probe(model, now_s or asyncio.get_running_loop().time)
+    if getattr(model, "only_describes", False):
+        return await _of_one_that_only_describes(asking, together)
     plain = [await asking.ask(_request("Answer with the one word: ready", key)) for key in (0, 1)]
     if all(answer.fault is not None for answer in plain):
         return _abilities(asking)
@@ -125,6 +129,17 @@ async def probe(model: ChatModel, *, together: int = _TOGETHER, now_s: Callable[
         vision=await _sees(asking),
         parallel=max(1.0, min(float(together), at_once)),
     )
+
+
+async def _of_one_that_only_describes(asking: _Probe, together: int) -> Abilities:
+    """Return what a model can do that describes pictures and answers nothing else; that it sees need not be tried."""
+    shown = [_picture(rgb) for rgb in _COLOURS.values()]
+    plain = [await asking.ask(_request("Describe this image in detail:", key, image=shown[key])) for key in (0, 1)]
+    if all(answer.fault is not None for answer in plain):
+        return _abilities(asking)
+    requests = [_request("Describe this image in detail:", 10 + n, image=shown[n % 2]) for n in range(together)]
+    at_once = await asking.ask_together(requests)
+    return _abilities(asking, vision=True, parallel=max(1.0, min(float(together), at_once)))
 
 
 #: A shape that nobody answers in by himself.

@@ -44,7 +44,9 @@ class Budget:
         minutes: Of real time from the making of this on, or None for no limit.
         path: Of a file in which several processes of this machine add up what they spend; what it holds counts as spent
             already. None for this process alone.
-        now_s: Real time, seconds.
+        sharers: How many processes share that file: each takes it that the others have as much under way as it has.
+        since_s: When the minutes began, as ``now_s`` tells it; None for now.
+        now_s: Real time, seconds; the same for all processes of a machine.
 
     Attributes:
         denied: Why the first call that might not begin might not, or None: the run is to be ended, and gone on with
@@ -60,6 +62,8 @@ class Budget:
         usd: float | None = None,
         minutes: float | None = None,
         path: Path | str | None = None,
+        sharers: int = 1,
+        since_s: float | None = None,
         now_s: Callable[[], float] = time.monotonic,
     ) -> None:
         faults = faults_of_budget(usd, minutes)
@@ -68,7 +72,9 @@ class Budget:
         self.usd, self.minutes = usd, minutes
         self.denied: str | None = None
         self._now_s = now_s
-        self._ends_s = math.inf if minutes is None else now_s() + 60.0 * minutes
+        self._sharers = sharers
+        began_s = now_s() if since_s is None else since_s
+        self._ends_s = math.inf if minutes is None else began_s + 60.0 * minutes
         self._out, self._dearest_usd = 0, 0.0
         self._unpriced: str | None = None
         self._sum = _Sum() if path is None else _SharedSum(path_of(path, "budget", SettingsError))
@@ -113,9 +119,10 @@ class Budget:
         if self._unpriced is not None:
             return f"the budget of {self.usd:g} US dollars cannot be kept: {self._unpriced}"
         spent_usd = self.spent_usd
-        if spent_usd + self._out * self._dearest_usd < self.usd:
+        out = self._out * self._sharers
+        if spent_usd + out * self._dearest_usd < self.usd:
             return None
-        under_way = f", {self._out} calls under way" if self._out else ""
+        under_way = f", {out} calls under way" if out else ""
         return f"the budget of {self.usd:g} US dollars is spent ({spent_usd:.4f}{under_way})"
 
 

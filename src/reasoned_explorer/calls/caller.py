@@ -35,9 +35,10 @@ class _Asked:
 class Caller:
     """Asks a model on a mission's clock, whatever the answer comes from.
 
-    A question goes to the tape that is replayed, and if there is one nowhere else; then to the cache; then, if the
-    budget allows, to the model. The mission is charged the seconds that the answer took when it came from the model.
-    Every call has its line in the ledger, cancelled ones, too, in the order in which they end.
+    A question goes to the tape that is replayed, and if there is one nowhere else; then to the tape of an earlier part
+    of the same mission; then to the cache; then, if the budget allows, to the model. The mission is charged the seconds
+    that the answer took when it came from the model. Every call has its line in the ledger, cancelled ones, too, in the
+    order in which they end.
 
     Args:
         model: Who answers.
@@ -45,6 +46,8 @@ class Caller:
         ledger: The mission's.
         cache: Of answers that are to be used again; faults are never kept.
         tape: To write calls to, or to take all answers from.
+        past: The calls of an earlier part of this mission, which ended early: what was answered then is paid and
+            written down already.
         budget: Of the run.
 
     Attributes:
@@ -61,6 +64,7 @@ class Caller:
         ledger: Ledger,
         cache: AnswerCache | None = None,
         tape: TapeRecorder | TapePlayer | None = None,
+        past: TapePlayer | None = None,
         budget: Budget | None = None,
     ) -> None:
         self.model = model
@@ -69,6 +73,7 @@ class Caller:
         self._cache, self._budget = cache, budget
         self._player = tape if isinstance(tape, TapePlayer) else None
         self._recorder = tape if isinstance(tape, TapeRecorder) else None
+        self._past = past
 
     def record_to(self, recorder: TapeRecorder) -> None:
         """Write every call to a tape from now on."""
@@ -83,6 +88,10 @@ class Caller:
         """
         if self._player is not None:
             return await self._replayed(self._player, request)
+        if self._past is not None:
+            played = self._past.play(self.model.fingerprint, request)
+            if isinstance(played, TapedCall) and played.outcome is Outcome.ANSWERED:
+                return await self._repeated(played, request)
         number = 0 if self._recorder is None else self._recorder.next_number()
         asked = _Asked(request, parts_of(self.model.fingerprint, request), number, self._clock.now_s())
         cache = self._cache if self._cache is not None and self._cache.takes(request) else None
@@ -141,6 +150,23 @@ class Caller:
             raise
         return self._close(asked, answer, stored.seconds, cached=True)
 
+    async def _repeated(self, played: TapedCall, request: ChatRequest) -> ChatAnswer:
+        """Answer as in the part of the mission that came before; it costs the same time and is the same expense."""
+        asked = _Asked(request, played.parts, played.asked, self._clock.now_s())
+        try:
+            await self._clock.think(played.seconds)
+        except asyncio.CancelledError:
+            self._close(
+                asked,
+                played.answer,
+                self._since(asked),
+                outcome=Outcome.CANCELLED,
+                cached=played.cached,
+                is_taped=True,
+            )
+            raise
+        return self._close(asked, played.answer, played.seconds, cached=played.cached, is_taped=True)
+
     async def _replayed(self, player: TapePlayer, request: ChatRequest) -> ChatAnswer:
         played = player.play(self.model.fingerprint, request)
         asked = _Asked(request, parts_of(self.model.fingerprint, request), 0, self._clock.now_s())
@@ -181,8 +207,9 @@ class Caller:
         *,
         outcome: Outcome = Outcome.ANSWERED,
         cached: bool = False,
+        is_taped: bool = False,
     ) -> ChatAnswer:
-        """Write a call that has ended to the ledger and to the tape."""
+        """Write a call that has ended to the ledger and, unless it is there already, to the tape."""
         request = asked.request
         self._ledger.add(
             CallRecord(
@@ -199,7 +226,7 @@ class Caller:
                 CANCELLED if outcome is Outcome.CANCELLED else answer.fault,
             )
         )
-        if self._recorder is not None:
+        if self._recorder is not None and not is_taped:
             call = TapedCall(
                 asked.number,
                 request.role,

@@ -11,6 +11,7 @@ from reasoned_explorer.calls.chat import ANY_OBJECT, ChatRequest, TokenChoice
 from reasoned_explorer.calls.endpoint import Structure
 
 _SHOWN = 160  # characters of a server's text in a fault
+_ERROR_NAMES = ("message", "detail", "error")
 
 
 class _Wire(BaseModel):
@@ -88,6 +89,28 @@ def shortened(text: str) -> str:
     return line if len(line) <= _SHOWN else line[: _SHOWN - 1] + "…"
 
 
+def words_of_error(body: object) -> str:
+    """Return what a server says of an error, or nothing where it says nothing.
+
+    OpenAI, vLLM and llama.cpp say it under ``error.message``; servers made with FastAPI, such as ``transformers
+    serve``, under ``detail``, as a text or as a list of places and what is wrong there; Ollama as ``error``.
+
+    Args:
+        body: As it came: text, or what JSON made of it, with what stood under ``error`` taken out or not.
+
+    >>> words_of_error({"detail": [{"loc": ["body", "seed"], "msg": "not permitted", "input": {"model": "x"}}]})
+    "'seed': not permitted"
+    """
+    if isinstance(body, Mapping):
+        return next(filter(None, (words_of_error(body[name]) for name in _ERROR_NAMES if name in body)), "")
+    if isinstance(body, list):
+        # Where it is wrong and how; not the input, which holds the names of all that was sent.
+        told = [each for each in body if isinstance(each, Mapping) and isinstance(each.get("msg"), str)]
+        places = [each["loc"][-1] if isinstance(each.get("loc"), list) and each["loc"] else "" for each in told]
+        return "; ".join(f"'{place}': {each['msg']}" for place, each in zip(places, told, strict=True))
+    return body.strip() if isinstance(body, str) else ""
+
+
 def data_url(picture: bytes) -> str:
     """Return a picture as a data URL, PNG or JPEG by its first bytes."""
     kind = "jpeg" if picture.startswith(b"\xff\xd8\xff") else "png"
@@ -95,7 +118,13 @@ def data_url(picture: bytes) -> str:
 
 
 def parameters(
-    request: ChatRequest, model: str, *, structure: Structure, length_name: str, without: frozenset[str] = frozenset()
+    request: ChatRequest,
+    model: str,
+    *,
+    structure: Structure,
+    length_name: str,
+    without: frozenset[str] = frozenset(),
+    knows_system: bool = True,
 ) -> dict[str, Any]:
     """Return what is sent for a request.
 
@@ -105,16 +134,19 @@ def parameters(
         structure: How the form of the answer is asked for.
         length_name: ``max_tokens``, or ``max_completion_tokens`` where the server wants that.
         without: Parameters that the server refuses.
+        knows_system: Whether the model takes a system beside the user; where not, the user says that, too.
     """
-    content: str | list[dict[str, Any]] = request.user
+    system = request.system if knows_system else ""
+    user = request.user if knows_system else f"{request.system}\n\n{request.user}".lstrip()
+    content: str | list[dict[str, Any]] = user
     if request.images:
         pictures = [{"type": "image_url", "image_url": {"url": data_url(each)}} for each in request.images]
-        content = [{"type": "text", "text": request.user}, *pictures]
+        content = [{"type": "text", "text": user}, *pictures]
     sent: dict[str, Any] = {
         "model": model,
         # Some models know no system, and are told about it by leaving it empty.
         "messages": [
-            *([{"role": "system", "content": request.system}] if request.system else []),
+            *([{"role": "system", "content": system}] if system else []),
             {"role": "user", "content": content},
         ],
         length_name: request.max_tokens,

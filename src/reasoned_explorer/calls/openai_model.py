@@ -22,7 +22,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from reasoned_explorer.calls.chat import ChatAnswer, ChatRequest
-from reasoned_explorer.calls.completion import Reading, parameters, read_completion, shortened
+from reasoned_explorer.calls.completion import Reading, parameters, read_completion, shortened, words_of_error
 from reasoned_explorer.calls.connections import Connection, check_sdk, connection_to
 from reasoned_explorer.calls.endpoint import AskingSettings, Endpoint, Structure, endpoint_at
 from reasoned_explorer.calls.pacing import NoTurnError, Sign
@@ -35,6 +35,7 @@ _LONGEST_BACK_OFF_S = 8.0
 _EMPTY_TRIES = 2  # a model that said nothing is likely to do so again; a server that stumbled is not
 _TOKENS_A_PICTURE = 300.0  # a guess, used only until the server has told what such calls take
 _OVERLOADED = {408, 503, 504, 529}
+_CANNOT_READ = {400, 422, 500}  # what servers answer where the model's own template refuses what it is given
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +48,7 @@ class _End:
     headers: Mapping[str, str] = field(default_factory=dict)
     body: bytes | None = None
     refused_parameter: str | None = None
+    cannot_read: bool = False
 
 
 @dataclass(slots=True)
@@ -96,6 +98,8 @@ class OpenAIModel:
         self.fingerprint = f"{self.name} at {endpoint.base_url} form {self._settings.structure}"
         self.is_local = endpoint.is_local
         self._without: frozenset[str] = frozenset()
+        # Of the model, by its template: Gemma 2 knows none, and what is sent with one is an error. None: not yet known.
+        self._knows_system: bool | None = None
         self._length_name = "max_completion_tokens" if endpoint.is_openai else "max_tokens"
         self._usual_tokens: dict[str, float] = {}
 
@@ -112,11 +116,20 @@ class OpenAIModel:
         """Parameters that the server refused and that are left out since, such as the seed of models without one."""
         return self._without
 
-    def asking(self, structure: Structure) -> "OpenAIModel":
-        """Return the same model, asked for the form of its answers in another way; client and pace stay shared."""
-        settings = replace(self._settings, structure=structure)
+    def asking(self, structure: Structure, *, most_at_once: int | None = None) -> "OpenAIModel":
+        """Return the same model, asked for the form of its answers in another way, with the same client.
+
+        Args:
+            structure: How the form is asked for.
+            most_at_once: At most so many calls at once; None for as many as before, with which the pace is shared, too.
+        """
+        limits = self._settings.limits
+        if most_at_once is not None:
+            limits = replace(limits, most_at_once=min(most_at_once, limits.most_at_once))
+        settings = replace(self._settings, structure=structure, limits=limits)
         other = OpenAIModel(self._model, self.endpoint, settings=settings, price=self.price)
         other._without, other._length_name = self._without - {"response_format"}, self._length_name
+        other._knows_system = self._knows_system
         return other
 
     async def ask(self, request: ChatRequest) -> ChatAnswer:
@@ -126,6 +139,7 @@ class OpenAIModel:
         loop = asyncio.get_running_loop()
         settings, spent = self._settings, _Spent()
         left_s, patience_s, turned_away = settings.deadline_s, settings.patience_s, False
+        knows_system = self._knows_system is not False
         while True:
             expected = self._expected_tokens(request)
             asked_s = loop.time()
@@ -137,7 +151,7 @@ class OpenAIModel:
             end, reading = _End(Sign.NEUTRAL), None
             spent.asked += 1
             try:
-                end = await self._try(connection, request, min(settings.try_s, left_s))
+                end = await self._try(connection, request, min(settings.try_s, left_s), knows_system=knows_system)
                 reading = self._read(request, end, spent)
             finally:
                 taken = reading.tokens_in + reading.tokens_out if reading is not None else None
@@ -153,6 +167,8 @@ class OpenAIModel:
             if self._learned(end) and left_s > 0.0:
                 continue
             spent.tries += 1
+            if reading is not None and request.system:
+                self._knows_system = knows_system
             if reading is not None and reading.fault is None:
                 return self._answer(spent, reading)
             fault = end.fault or (reading.fault if reading is not None else None) or ""
@@ -160,11 +176,16 @@ class OpenAIModel:
             # Spread, so that what failed together is not tried again together.
             wait_s = min(_LONGEST_BACK_OFF_S, settings.back_off_s * 2.0 ** (spent.tries - 1)) * random.uniform(0.75, 1)
             if not again or spent.tries >= settings.tries or left_s <= wait_s:
-                return self._given_up(spent, fault, reading)
+                # Nothing that had a system was ever answered: perhaps the model knows none, as Gemma 2.
+                may_know_none = end.cannot_read and request.system and knows_system and self._knows_system is None
+                wait_s = settings.back_off_s  # a server that failed may be closing the connection
+                if not may_know_none or left_s <= wait_s:
+                    return self._given_up(spent, fault, reading)
+                knows_system = False
             left_s -= wait_s
             await asyncio.sleep(wait_s)
 
-    async def _try(self, connection: Connection, request: ChatRequest, within_s: float) -> _End:
+    async def _try(self, connection: Connection, request: ChatRequest, within_s: float, *, knows_system: bool) -> _End:
         from aiohttp import ClientError
         from httpx2 import HTTPError, Response
         from openai import APIConnectionError, APIStatusError, OpenAIError
@@ -175,6 +196,7 @@ class OpenAIModel:
             structure=self._settings.structure,
             length_name=self._length_name,
             without=self._without,
+            knows_system=knows_system,
         )
         try:
             async with asyncio.timeout(within_s):
@@ -198,20 +220,21 @@ class OpenAIModel:
 
     def _refusal(self, error: Any) -> _End:
         status, headers = int(error.status_code), error.response.headers
-        said = error.body.get("message") if isinstance(error.body, dict) else None
-        detail = f"status {status}", str(said or error.message)
+        detail = f"status {status}", words_of_error(error.body)
         if status == 429:
             if error.code == "insufficient_quota":
                 return _End(Sign.NEUTRAL, self._fault("quota", *detail), headers=headers)
             return _End(Sign.LIMITED, self._fault("rate limit", *detail), again=True, headers=headers)
         if status >= 500 or status in {408, 409}:
             sign = Sign.OVERLOADED if status in _OVERLOADED else Sign.NEUTRAL
-            return _End(sign, self._fault("server error", *detail), again=True, headers=headers)
+            fault = self._fault("server error", *detail)
+            return _End(sign, fault, again=True, headers=headers, cannot_read=status in _CANNOT_READ)
         if status in {401, 403}:
             return _End(Sign.NEUTRAL, self._fault("no access", *detail))
         if status < 400:
             return _End(Sign.NEUTRAL, self._fault("redirected", f"status {status}", ""))
-        return _End(Sign.NEUTRAL, self._fault("rejected", *detail), refused_parameter=_refused(error))
+        fault, refused = self._fault("rejected", *detail), _refused(error)
+        return _End(Sign.NEUTRAL, fault, refused_parameter=refused, cannot_read=status in _CANNOT_READ)
 
     def _fault(self, kind: str, what: str, detail: str) -> str:
         text = shortened(self.endpoint.scrub(detail))
@@ -309,7 +332,7 @@ def _refused(error: Any) -> str | None:
     names = ("max_tokens", *_OPTIONAL)
     if error.param in names:
         return str(error.param)
-    message = str(error.message)
+    message = words_of_error(error.body)
     return next((name for name in names if f"'{name}'" in message or f"`{name}`" in message), None)
 
 

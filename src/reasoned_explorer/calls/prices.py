@@ -73,10 +73,8 @@ class PriceTable:
         return len(self._prices)
 
     def price_of(self, model: str, endpoint: Endpoint) -> Price | None:
-        """Return the price of a model, 0 for this machine, or None where it is not known."""
-        if endpoint.is_local:
-            return OWN_MACHINE
-        return self._prices.get((endpoint.host, model))
+        """Return the price of a model, or None where it is not known; on this machine 0 where no other is given."""
+        return self._prices.get((endpoint.host, model), OWN_MACHINE if endpoint.is_local else None)
 
     def over(self, other: "PriceTable") -> "PriceTable":
         """Return a table in which these prices go before another's."""

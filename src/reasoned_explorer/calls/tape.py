@@ -102,6 +102,37 @@ class TapeRecorder:
             raise disk_error("tape", self.path, error, kind=RecordError) from error
         self._line({"tape": TAPE_SCHEMA, "about": dict(about or {})})
 
+    @classmethod
+    def going_on(cls, path: Path | str) -> "TapeRecorder":
+        """Write on, on the tape of a run that ended early.
+
+        Calls that were cancelled or denied at the end of that run are taken off: they are to be made anew.
+
+        Args:
+            path: Of the tape; it is written anew beside itself and then put in its place.
+
+        Raises:
+            RecordError, RecordWriteError: As when a tape is read and when one is begun.
+        """
+        past = TapePlayer(path)
+        half = past.path.with_name(f"{past.path.name}.half")
+        half.unlink(missing_ok=True)
+        recorder = cls(half, about=past.about)
+        try:
+            for call in past.calls:
+                if call.outcome is Outcome.ANSWERED:
+                    recorder.add(call)
+            half.replace(past.path)
+        except BaseException as error:
+            recorder._file.close()
+            half.unlink(missing_ok=True)
+            if isinstance(error, OSError):
+                raise disk_error("tape", past.path, error, kind=RecordError) from error
+            raise
+        recorder.path = past.path
+        recorder._asked = max((call.asked for call in past.calls), default=-1) + 1
+        return recorder
+
     def next_number(self) -> int:
         """Return the number of a call that is asked now."""
         self._asked += 1
@@ -151,6 +182,7 @@ class TapePlayer:
 
     Attributes:
         path: Of the tape.
+        calls: All that is on it, in the order of ending.
         about: What the run was started with.
         complete: Whether the run ended by itself; if not, the tape may end before the run that is replayed.
 
@@ -160,10 +192,10 @@ class TapePlayer:
 
     def __init__(self, path: Path | str) -> None:
         self.path = path_of(path, "tape", RecordError)
-        calls, self.about, self.complete = _read(self.path)
+        self.calls, self.about, self.complete = _read(self.path)
         self._left: dict[tuple[str, tuple[int, ...], str], deque[TapedCall]] = defaultdict(deque)
         self._of_scene: dict[tuple[str, tuple[int, ...]], list[TapedCall]] = defaultdict(list)
-        for call in sorted(calls, key=lambda call: call.asked):
+        for call in sorted(self.calls, key=lambda call: call.asked):
             self._left[call.role, call.key, call.digest].append(call)
             self._of_scene[call.role, call.key].append(call)
 

@@ -3,9 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 
-from reasoned_explorer.cli.bench import BenchOptions, notes_on, results_of, run_from_options
-from reasoned_explorer.cli.console import Output
-from reasoned_explorer.cli.sheets import print_sheet
+from reasoned_explorer.cli.bench import BenchOptions, notes_on, results_of, run_from_options, show_sheets
 from reasoned_explorer.evaluation.bench.ablations import (
     CAPTIONER,
     DEPTH_METHOD,
@@ -18,9 +16,9 @@ from reasoned_explorer.evaluation.bench.ablations import (
     minds_sheet,
 )
 from reasoned_explorer.evaluation.bench.results import Results
-from reasoned_explorer.evaluation.bench.store import NOTHING_FINISHED, RunStore
+from reasoned_explorer.evaluation.bench.store import RunStore
 from reasoned_explorer.evaluation.bench.tables import Sheet
-from reasoned_explorer.model import Fault, Gathering, InputError, RecordError, SettingsError
+from reasoned_explorer.model import Fault, Gathering, RecordError, SettingsError
 
 #: The split of an ablation where a person names neither a split nor worlds.
 SPLIT = "full"
@@ -85,12 +83,7 @@ def _run(
             about = f"{plan.split.label}, {vehicle}, T_max {T_MAX_MIN:g} min, captions without error"
             if results.methods:
                 sheets.append(sheet_of(results, title=f"{title}: {about}", notes=notes_on(of_all, plan).lines))
-    if not sheets:
-        raise InputError("run", [NOTHING_FINISHED])
-    console = Output()
-    for sheet in sheets:
-        print_sheet(console, sheet)
-    console.print(f"kept in {folder}: rex report {folder} makes a page of it", markup=False, soft_wrap=True)
+        show_sheets(sheets, store)
 
 
 def _check_resumed(options: BenchOptions, method: str) -> None:

@@ -25,6 +25,7 @@ class ExitCode(IntEnum):
     NOT_FOUND = 1
     BAD_INPUT = 2
     PART_FAILED = 3
+    BUDGET_SPENT = 4
     STOPPED = 130
 
 

@@ -9,6 +9,7 @@ from reasoned_explorer import __version__
 from reasoned_explorer.cli.answers import answering
 from reasoned_explorer.cli.bench_app import add_commands
 from reasoned_explorer.cli.minds_app import minds_app
+from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices, Yes
 from reasoned_explorer.cli.worlds_app import worlds_app
 
 app = typer.Typer(
@@ -71,17 +72,23 @@ def run(
     captioner: Annotated[str, typer.Option(help="Who says what is seen; see rex names.")] = "noisy",
     vehicle: Annotated[str, typer.Option(help="A vehicle profile; see rex names.")] = "drone",
     latency: Annotated[
-        str, typer.Option(help="How long modelled calls take: gpt-2023, gpt-fast, instant.")
+        str, typer.Option(help="How long modelled calls take: gpt-2023, gpt-fast, instant, or seconds: 0.8s.")
     ] = "gpt-2023",
     clock: Annotated[
         str | None,
         typer.Option(help="virtual, mixed or real time.", show_default="virtual; mixed where a model is called"),
     ] = None,
-    base_url: Annotated[
-        str | None,
-        typer.Option(help="Where models openai:… are, e.g. http://localhost:8000/v1.", show_default="OpenAI's"),
+    base_url: BaseUrl = None,
+    key_variable: KeyVariable = None,
+    prices: Prices = None,
+    record: Annotated[
+        Path | None,
+        typer.Option(help="Keep every call to a model in this file.", show_default="calls.tape in the folder"),
     ] = None,
-    record: Annotated[Path | None, typer.Option(help="Keep every call to a model in this file.")] = None,
+    resume: Annotated[
+        Path | None,
+        typer.Option(help="Go on with a mission that ended early from the file of its calls; they are not paid again."),
+    ] = None,
     replay: Annotated[Path | None, typer.Option(help="Take every answer from such a file; nobody is called.")] = None,
     cache: Annotated[Path | None, typer.Option(help="File of answers that may be used again; made if need be.")] = None,
     budget_usd: Annotated[float | None, typer.Option(help="End before calls cost more, US dollars.")] = None,
@@ -93,6 +100,10 @@ def run(
     looks: Annotated[int, typer.Option(help="Looks that must agree before the goal is declared found.")] = 2,
     radius: Annotated[float, typer.Option(help="Success radius R of the judge, metres.")] = 15.0,
     out: Annotated[Path | None, typer.Option(help="Folder for record and map; runs/… by default.")] = None,
+    images: Annotated[bool, typer.Option("--images/--no-images", help="Keep the pictures of all views, PNG.")] = False,
+    picture_px: Annotated[int, typer.Option(help="Side of a picture, pixels.")] = 448,
+    conditions: Annotated[str, typer.Option(help="In pictures: clear, overcast, dusk, fog or rain.")] = "clear",
+    yes: Yes = False,
     map_: Annotated[bool, typer.Option("--map/--no-map", help="Draw the map picture.")] = True,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the summary.")] = False,
 ) -> None:
@@ -128,8 +139,22 @@ def run(
             radius_m=radius,
             out=out,
             draw=map_,
+            images=images,
+            picture_px=picture_px,
+            conditions=conditions,
             quiet=quiet,
-            models=ModelOptions(base_url, record, replay, cache, budget_usd, budget_minutes),
+            models=ModelOptions(
+                base_url=base_url,
+                key_variable=key_variable,
+                prices=prices,
+                record=record,
+                replay=replay,
+                resume=resume,
+                cache=cache,
+                budget_usd=budget_usd,
+                budget_minutes=budget_minutes,
+                yes=yes,
+            ),
         )
     )
 

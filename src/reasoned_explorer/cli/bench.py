@@ -3,9 +3,9 @@
 import os
 import shlex
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
@@ -15,12 +15,15 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from reasoned_explorer.cli.answers import ExitCode, complain
+from reasoned_explorer.cli.bench_models import ReadyModels, models_ready
 from reasoned_explorer.cli.console import Output
+from reasoned_explorer.cli.model_lines import lines_of_forecast
+from reasoned_explorer.cli.models import ModelOptions
 from reasoned_explorer.cli.parsing import parse_bbox, parse_levels, parse_planners, parse_seeds
 from reasoned_explorer.cli.sheets import print_sheet
 from reasoned_explorer.evaluation.bench.export import export
 from reasoned_explorer.evaluation.bench.notes import Notes, notes_of
-from reasoned_explorer.evaluation.bench.plan import BenchPlan
+from reasoned_explorer.evaluation.bench.plan import BenchPlan, longer
 from reasoned_explorer.evaluation.bench.ray_pool import check_address, joined, require_ray
 from reasoned_explorer.evaluation.bench.results import Results
 from reasoned_explorer.evaluation.bench.runner import BenchProgress, Workers, run_bench, split_of
@@ -36,8 +39,10 @@ from reasoned_explorer.evaluation.bench.tables import (
     paper_sheets,
     vehicles_sheet,
 )
-from reasoned_explorer.evaluation.methods import methods, sound_methods
+from reasoned_explorer.evaluation.methods import methods, models_called, sound_methods
 from reasoned_explorer.evaluation.mission_settings import MissionSettings
+from reasoned_explorer.evaluation.model_access import ModelAccess
+from reasoned_explorer.evaluation.model_desk import LOCAL_PREFIX
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.model import Fault, Gathering, InputError, RecordWriteError, SettingsError
 from reasoned_explorer.model.checks import is_there
@@ -76,9 +81,11 @@ class BenchOptions:
     evaluator: str | None = None
     checker: str | None = None
     captioner: str = "noisy"
+    picture_px: int = 448
+    conditions: str = "clear"
     vehicle: str = "drone"
     latency: str = "gpt-2023"
-    clock: str = "virtual"
+    clock: str | None = None
     t_max_min: float = 30.0
     radius_m: float = 15.0
     workers: int | None = None
@@ -88,6 +95,7 @@ class BenchOptions:
     add: str = ""
     traces: bool = True
     quiet: bool = False
+    models: ModelOptions = field(default_factory=ModelOptions)
 
     @property
     def who(self) -> Workers:
@@ -100,19 +108,40 @@ class BenchOptions:
             raise SettingsError("--workers", [Fault(f"{self.workers}", "1 to 1,024")])
         return Workers(len(os.sched_getaffinity(0)) if self.workers is None else self.workers, self.ray)
 
+    def who_with(self, models: Sequence[str]) -> Workers:
+        """Return who runs missions that call models: one process where one is on this machine, unless told otherwise.
+
+        Raises:
+            SettingsError: As `who`.
+        """
+        own = any(name.startswith(LOCAL_PREFIX) for name in models)
+        return replace(self.who, count=1) if own and self.workers is None else self.who
+
 
 def run_bench_from_options(options: BenchOptions) -> None:
     """Run a benchmark, show how far it is, and print its tables."""
     folder = run_from_options(options)
-    console = Output()
     with RunStore.read(folder) as store:
-        for sheet in sheets_of(store):
-            print_sheet(console, sheet)
-        failed = store.failed()
+        # Where not even one mission is over the budget was too small for it.
+        show_sheets(sheets_of(store) if store.finished() else (), store)
+
+
+def show_sheets(sheets: Iterable[Sheet], store: RunStore) -> None:
+    """Print tables of a run, and end with what became of its missions.
+
+    Raises:
+        typer.Exit: If a part failed in missions, or missions are left since the budget is spent.
+    """
+    console = Output()
+    for sheet in sheets:
+        print_sheet(console, sheet)
+    folder, failed = store.folder, store.failed()
     console.print(f"kept in {folder}: rex report {folder} makes a page of it", markup=False, soft_wrap=True)
     if failed:
         complain(f"a part failed in {failed} missions: they count as failures; see the column reason of rex export")
         raise typer.Exit(ExitCode.PART_FAILED)
+    if len(store.finished()) < store.plan.count:
+        raise typer.Exit(ExitCode.BUDGET_SPENT)
 
 
 def run_from_options(
@@ -134,22 +163,29 @@ def run_from_options(
     if options.ray is not None:
         require_ray()
     with ExitStack() as stack:
-        folder, store = _store_of(options, names, wrong, stack)
+        store, ready = _store_of(options, names, wrong, stack)
+        folder, plan = store.folder, store.plan
+        who = options.who_with(plan.models)
         if not options.quiet:
-            for line in about_split(store.plan.split, store.plan.vehicles):
+            lines = about_split(plan.split, plan.vehicles)
+            for line in [*lines, *lines_of_forecast(plan, ready.known, workers=who.count)]:
                 console.print(line, markup=False, soft_wrap=True)
+        access = ready.access(store, options.models, workers=who.count, here=options.ray is None)
         try:
-            _run(store, options.who, console, quiet=options.quiet)
+            denied = _run(store, who, access, console, quiet=options.quiet)
         except (KeyboardInterrupt, RecordWriteError):
             complain(f"what is finished is kept: go on with --resume {folder}")
             raise
+        if denied is not None:
+            complain(f"{denied}: what is finished is kept, and so are the calls of missions that were under way")
+            complain(f"go on with --resume {folder} and another budget")
     return folder
 
 
 def _store_of(
     options: BenchOptions, names: Sequence[str] | None, wrong: Sequence[InputError], stack: ExitStack
-) -> tuple[Path, RunStore]:
-    """Return the folder and the store of the run that is to be run; what has to be ended afterwards is put on a stack.
+) -> tuple[RunStore, ReadyModels]:
+    """Return the store of the run that is to be run, and its models; what has to be ended afterwards is put on a stack.
 
     A cluster is joined before anything is made on disk.
     """
@@ -161,14 +197,22 @@ def _store_of(
         if options.ray is not None:
             stack.enter_context(joined(options.ray, who.count))
         store = stack.enter_context(RunStore.open(options.resume))
+        plan = store.plan
+        if more:
+            plan = longer(plan, more)
+        if faults := options.models.faults(plan.models) + _ray_faults(options):
+            raise SettingsError("models", faults)
+        known = models_ready(options.models, plan, store.models)
         if more:
             store.extend(more)
-        return options.resume, store
-    plan = _plan(options, parse_planners(options.planners) if names is None else names, wrong)
-    if options.ray is not None:
-        stack.enter_context(joined(options.ray, options.who.count))
-    folder = options.out or _free_folder(plan)
-    return folder, stack.enter_context(RunStore.create(folder, plan, _about()))
+    else:
+        plan = _plan(options, parse_planners(options.planners) if names is None else names, wrong)
+        # Asked before anything is made on disk: they may not answer.
+        known = models_ready(options.models, plan, {})
+        if options.ray is not None:
+            stack.enter_context(joined(options.ray, options.who.count))
+        store = stack.enter_context(RunStore.create(options.out or _free_folder(plan), plan, _about()))
+    return store, known
 
 
 def about_split(split: Split, vehicles: Sequence[str]) -> list[str]:
@@ -180,7 +224,8 @@ def about_split(split: Split, vehicles: Sequence[str]) -> list[str]:
     return [*lines, *split.attributions]
 
 
-def _run(store: RunStore, who: Workers, console: Console, *, quiet: bool) -> None:
+def _run(store: RunStore, who: Workers, access: ModelAccess, console: Console, *, quiet: bool) -> str | None:
+    """Run what is left; return why not all of it was run, or None."""
     columns = (
         BarColumn(bar_width=30),
         TextColumn("{task.completed}/{task.total} missions"),
@@ -193,7 +238,7 @@ def _run(store: RunStore, who: Workers, console: Console, *, quiet: bool) -> Non
         def on_done(progress: BenchProgress) -> None:
             bar.update(shown, total=progress.total, completed=progress.finished, pace=_pace(progress))
 
-        run_bench(store, who, on_done)
+        return run_bench(store, who, on_done, access=access)
 
 
 def _pace(progress: BenchProgress) -> str:
@@ -223,16 +268,23 @@ def _plan(options: BenchOptions, names: Sequence[str], wrong: Sequence[InputErro
     seeds = found.take(lambda: parse_seeds(options.seeds), nothing) or (0,)
     levels = found.take(lambda: parse_levels(options.levels), nothing)
     base = MissionSettings(
+        clock=options.clock or "virtual",
         minds=options.minds,
         visionary=options.visionary,
         evaluator=options.evaluator,
         checker=options.checker,
         captioner=options.captioner,
+        picture_px=options.picture_px,
+        conditions=options.conditions,
         latency=options.latency,
-        clock=options.clock,
         explorer=explorer,
         success_radius_m=options.radius_m,
     )
+    called = models_called(sound, base)
+    if called and options.clock is None:
+        base = replace(base, clock="mixed")  # real calls take real seconds
+    if faults := options.models.faults(called) + _ray_faults(options):
+        found.add(SettingsError("models", faults))
     unmade = found.take(
         lambda: BenchPlan(
             split=Split("unmade", 0, (), (), {}),
@@ -260,6 +312,17 @@ def _plan(options: BenchOptions, names: Sequence[str], wrong: Sequence[InputErro
     if unmade is None or workers is None or places is None:  # their errors were raised
         raise AssertionError
     return replace(unmade, split=_split(options, *places, levels=levels, workers=workers.count))
+
+
+def _ray_faults(options: BenchOptions) -> list[Fault]:
+    """Return what cannot be had on a cluster: what is kept in files of one machine."""
+    given = {"--budget-usd": options.models.budget_usd, "--budget-minutes": options.models.budget_minutes}
+    expected = "workers of this machine"
+    return [
+        Fault(f"{name} beside --ray", expected, "or no budget")
+        for name, value in given.items()
+        if value is not None and options.ray is not None
+    ]
 
 
 def _is_empty(folder: Path) -> bool:

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from reasoned_explorer.cli.answers import answering
+from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices, Yes
 from reasoned_explorer.model import Fault, SettingsError
 
 ablate_app = typer.Typer(
@@ -15,7 +16,21 @@ _SplitSeed = Annotated[
     int | None,
     typer.Option(help="Deal other episodes.", show_default="the split's own; 1 for --world"),
 ]
+_Cache = Annotated[Path | None, typer.Option(help="File of answers that may be used again; made if need be.")]
+_BudgetUsd = Annotated[
+    float | None, typer.Option(help="Stop before calls cost more in this sitting, US dollars; --resume goes on.")
+]
+_BudgetMinutes = Annotated[
+    float | None, typer.Option(help="Stop after so many real minutes of this sitting; --resume goes on.")
+]
 Run = Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a run of rex bench.")]
+
+
+_BESIDE_RESUME = (
+    *("add", "workers", "ray", "base_url", "key_variable", "prices", "cache", "budget_usd", "budget_minutes"),
+    *("yes", "quiet", "resume"),
+)
+_BESIDE_RESUME_SAID = ", ".join(f"--{name.replace('_', '-')}" for name in _BESIDE_RESUME[:-1]) + " only"
 
 
 def add_commands(app: typer.Typer) -> None:
@@ -38,12 +53,12 @@ def _refuse_beside_resume(context: typer.Context) -> None:
     given = [
         Fault(
             f"{param.opts[0]} beside --resume",
-            "--add, --workers, --ray and --quiet only",
+            _BESIDE_RESUME_SAID,
             "a run knows its own settings",
         )
         for param in context.command.params
         if param.name is not None
-        and param.name not in {"resume", "add", "workers", "ray", "quiet"}
+        and param.name not in _BESIDE_RESUME
         and getattr(context.get_parameter_source(param.name), "name", "") == "COMMANDLINE"
     ]
     if given:
@@ -88,9 +103,21 @@ def bench(
     evaluator: Annotated[str | None, typer.Option(help="Who scores, if not --minds.")] = None,
     checker: Annotated[str | None, typer.Option(help="Who notices the goal, if not --minds.")] = None,
     captioner: Annotated[str, typer.Option(help="Who says what is seen; see rex names.")] = "noisy",
+    picture_px: Annotated[int, typer.Option(help="Side of the pictures that a model is shown, pixels.")] = 448,
+    conditions: Annotated[str, typer.Option(help="In pictures: clear, overcast, dusk, fog or rain.")] = "clear",
+    yes: Yes = False,
     vehicle: Annotated[str, typer.Option(help="Vehicle profiles with commas; each has a table of its own.")] = "drone",
     latency: Annotated[str, typer.Option(help="How long modelled calls take; see rex names.")] = "gpt-2023",
-    clock: Annotated[str, typer.Option(help="virtual, mixed or real time.")] = "virtual",
+    clock: Annotated[
+        str | None,
+        typer.Option(help="virtual, mixed or real time.", show_default="virtual; mixed where a model is called"),
+    ] = None,
+    base_url: BaseUrl = None,
+    key_variable: KeyVariable = None,
+    prices: Prices = None,
+    cache: _Cache = None,
+    budget_usd: _BudgetUsd = None,
+    budget_minutes: _BudgetMinutes = None,
     t_max: Annotated[float, typer.Option(help="Mission time above which it is failed, minutes.")] = 30.0,
     radius: Annotated[float, typer.Option(help="Success radius R of the judge, metres.")] = 15.0,
     workers: Annotated[
@@ -109,10 +136,11 @@ def bench(
 ) -> None:
     """Run planners over the missions of a split, and print one table.
 
-    Exit code 0: all missions ran. 2: bad input. 3: a part failed in a mission, or the disk is full. 130: stopped with
-    Ctrl-C. What is finished is kept: go on with --resume.
+    Exit code 0: all missions ran. 2: bad input. 3: a part failed in a mission, or the disk is full. 4: the budget is
+    spent. 130: stopped with Ctrl-C. What is finished is kept: go on with --resume.
     """
     from reasoned_explorer.cli.bench import BenchOptions, run_bench_from_options
+    from reasoned_explorer.cli.models import ModelOptions
     from reasoned_explorer.cli.parsing import parse_worlds
 
     _refuse_beside_resume(context)
@@ -131,6 +159,8 @@ def bench(
             evaluator=evaluator,
             checker=checker,
             captioner=captioner,
+            picture_px=picture_px,
+            conditions=conditions,
             vehicle=vehicle,
             latency=latency,
             clock=clock,
@@ -143,6 +173,15 @@ def bench(
             add=add,
             traces=traces,
             quiet=quiet,
+            models=ModelOptions(
+                base_url=base_url,
+                key_variable=key_variable,
+                prices=prices,
+                cache=cache,
+                budget_usd=budget_usd,
+                budget_minutes=budget_minutes,
+                yes=yes,
+            ),
         )
     )
 
@@ -219,6 +258,12 @@ def ablate_depth_(
     minds: Annotated[str, typer.Option(help="Who imagines, scores and checks.")] = "embedded",
     vehicle: _Vehicle = "drone",
     latency: _Latency = "gpt-2023",
+    base_url: BaseUrl = None,
+    key_variable: KeyVariable = None,
+    prices: Prices = None,
+    cache: _Cache = None,
+    budget_usd: _BudgetUsd = None,
+    budget_minutes: _BudgetMinutes = None,
     workers: _Workers = None,
     ray: _Ray = None,
     out: _Out = None,
@@ -232,6 +277,7 @@ def ablate_depth_(
     """
     from reasoned_explorer.cli.ablate import ablate_depth
     from reasoned_explorer.cli.bench import BenchOptions
+    from reasoned_explorer.cli.models import ModelOptions
     from reasoned_explorer.cli.parsing import parse_worlds
 
     _refuse_beside_resume(context)
@@ -251,6 +297,14 @@ def ablate_depth_(
         resume=resume,
         traces=traces,
         quiet=quiet,
+        models=ModelOptions(
+            base_url=base_url,
+            key_variable=key_variable,
+            prices=prices,
+            cache=cache,
+            budget_usd=budget_usd,
+            budget_minutes=budget_minutes,
+        ),
     )
     ablate_depth(options, depths)
 
@@ -271,6 +325,12 @@ def ablate_minds_(
     seeds: _Seeds = "0",
     vehicle: _Vehicle = "drone",
     latency: _Latency = "gpt-2023",
+    base_url: BaseUrl = None,
+    key_variable: KeyVariable = None,
+    prices: Prices = None,
+    cache: _Cache = None,
+    budget_usd: _BudgetUsd = None,
+    budget_minutes: _BudgetMinutes = None,
     workers: _Workers = None,
     ray: _Ray = None,
     out: _Out = None,
@@ -284,6 +344,7 @@ def ablate_minds_(
     """
     from reasoned_explorer.cli.ablate import ablate_minds
     from reasoned_explorer.cli.bench import BenchOptions
+    from reasoned_explorer.cli.models import ModelOptions
     from reasoned_explorer.cli.parsing import parse_worlds
 
     _refuse_beside_resume(context)
@@ -303,5 +364,13 @@ def ablate_minds_(
         resume=resume,
         traces=traces,
         quiet=quiet,
+        models=ModelOptions(
+            base_url=base_url,
+            key_variable=key_variable,
+            prices=prices,
+            cache=cache,
+            budget_usd=budget_usd,
+            budget_minutes=budget_minutes,
+        ),
     )
     ablate_minds(options, visionaries, evaluators)

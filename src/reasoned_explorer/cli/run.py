@@ -17,6 +17,7 @@ from reasoned_explorer.cli.progress import Progress, header_lines, summary_lines
 from reasoned_explorer.evaluation.methods import BOUND_METHODS
 from reasoned_explorer.evaluation.mission import Mission, MissionResult
 from reasoned_explorer.evaluation.mission_settings import MissionSettings, errors_of, models_of
+from reasoned_explorer.evaluation.picture_folder import PICTURES_NAME
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.model import Fault, Gathering, RecordError, SettingsError
 from reasoned_explorer.model.checks import is_there
@@ -58,6 +59,9 @@ class RunOptions:
     radius_m: float
     out: Path | None
     draw: bool
+    images: bool
+    picture_px: int
+    conditions: str
     quiet: bool
     models: ModelOptions
 
@@ -82,6 +86,8 @@ class RunOptions:
             explorer=explorer,
             success_radius_m=self.radius_m,
             seed=self.seed,
+            picture_px=self.picture_px,
+            conditions=self.conditions,
         )
         # Models that are called take real seconds.
         settings = replace(settings, clock=self.clock or ("mixed" if models_of(settings) else "virtual"))
@@ -133,7 +139,15 @@ def run_from_options(options: RunOptions) -> None:
         complain(f"note: {note}; choose a part with --bbox")
     stop_if_asked()
     desk = options.models.desk()
-    mission = Mission(options.goal, world, settings, start=parse_start(options.start, world), desk=desk)
+    options.models.agree(desk, settings.captioner, [world.name] if world.origin is not None else [])
+    mission = Mission(
+        options.goal,
+        world,
+        settings,
+        start=parse_start(options.start, world),
+        desk=desk,
+        pictures=folder / PICTURES_NAME if options.images else None,
+    )
     stop_if_asked()
     if not options.quiet:
         for line in header_lines(mission.header):
@@ -149,12 +163,13 @@ def run_from_options(options: RunOptions) -> None:
             for line in progress.lines(step):
                 console.print(line, markup=False, soft_wrap=True)
 
-    with options.models.taping(desk, mission):
+    with options.models.taping(desk, mission, folder):
         result = mission.run(folder=folder, on_step=on_step)
     for line in summary_lines(result.record):
         console.print(line, markup=False, soft_wrap=True)
     _keep(result, folder, draw=options.draw)
     console.print(f"kept in {folder}", markup=False, soft_wrap=True)
+    options.models.say_how_to_go_on(desk, folder)
     raise typer.Exit(_exit_code(result))
 
 

@@ -2,7 +2,8 @@
 
 A method is written as a planner's name, with settings of the planner behind a colon, minds of its own for visionary and
 evaluator behind an ``@``, and ``+perfect-halt`` at the end where the judge is to do the halting: ``llm-rrt``,
-``llm-rrt:depth=1``, ``llm-rrt@embedded/oracle``, ``follow-paths+perfect-halt``. Bounds have names of their own.
+``llm-rrt:depth=1``, ``llm-rrt@embedded/oracle``, ``llm-rrt@openai:gpt-4o-mini/openai:gpt-4o``,
+``follow-paths+perfect-halt``. Bounds have names of their own.
 Whatever planner is registered, by this package or another, is a method.
 """
 
@@ -10,8 +11,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from reasoned_explorer.evaluation.mission_settings import MissionSettings
-from reasoned_explorer.minds.registry import READ_THE_TRUTH
+from reasoned_explorer.calls.chat import is_model_name
+from reasoned_explorer.evaluation.mission_settings import MissionSettings, models_of
+from reasoned_explorer.minds.registry import MINDS, READ_THE_TRUTH
 from reasoned_explorer.model import Fault, InputError, SettingsError, UnknownNameError
 from reasoned_explorer.planning.registry import PLANNERS
 from reasoned_explorer.planning.setting_pairs import parse_planner_settings
@@ -95,8 +97,8 @@ def method(name: str) -> Method:
     """
     stem, halts = (name.removesuffix(_HALT_SUFFIX), PERFECT_HALT) if name.endswith(_HALT_SUFFIX) else (name, None)
     stem, at, roles = stem.partition("@")
-    visionary, slash, evaluator = roles.partition("/")
-    if at and not (visionary and slash and evaluator):
+    visionary, evaluator = _roles(roles)
+    if at and not (visionary and evaluator):
         raise SettingsError(f"planner {name!r}", [Fault(f"minds {roles!r}", "visionary/evaluator behind the @")])
     planner, colon, listed = stem.partition(":")
     settings = parse_planner_settings([pair for pair in listed.split(",") if pair]) if colon else {}
@@ -112,6 +114,13 @@ def method(name: str) -> Method:
     return Method(name, planner, settings, visionary or None, evaluator or None, halts, is_bound=is_bound)
 
 
+def _roles(text: str) -> tuple[str, str]:
+    """Return visionary and evaluator of ``visionary/evaluator``; models' own names may hold slashes, too."""
+    pairs = [(text[:at], text[at + 1 :]) for at, sign in enumerate(text) if sign == "/"]
+    known = [pair for pair in pairs if all(is_model_name(name) or name in MINDS.names() for name in pair)]
+    return known[0] if known else (pairs[0] if pairs else ("", ""))
+
+
 def methods(names: Sequence[str]) -> tuple[Method, ...]:
     """Return the methods that names and groups of names mean, each once, in order.
 
@@ -122,6 +131,17 @@ def methods(names: Sequence[str]) -> tuple[Method, ...]:
     if faults:
         raise InputError("planners", faults)
     return found
+
+
+def models_called(names: Sequence[str], base: MissionSettings) -> tuple[str, ...]:
+    """Return the models that missions of methods call, each once.
+
+    Args:
+        names: Methods that can be read.
+        base: Who does what where a method does not say otherwise.
+    """
+    called = (models_of(method(name).settings(base)) for name in names)
+    return tuple(dict.fromkeys(model for models in called for model in models))
 
 
 def sound_methods(names: Sequence[str]) -> tuple[Method, ...]:

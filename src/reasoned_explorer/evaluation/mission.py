@@ -11,11 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from reasoned_explorer.calls.caller import Caller, end_of
+from reasoned_explorer.calls.chat import is_model_name
 from reasoned_explorer.calls.ledger import CallRecord, Ledger
 from reasoned_explorer.evaluation.guide import GUIDE_LABEL, Guide
 from reasoned_explorer.evaluation.mission_settings import CLOCKS, errors_of, with_overrides
 from reasoned_explorer.evaluation.mission_settings import MissionSettings as MissionSettings  # noqa: PLC0414 - is had from here, too
 from reasoned_explorer.evaluation.model_desk import ModelDesk
+from reasoned_explorer.evaluation.picture_folder import KeepingCaptioner
 from reasoned_explorer.evaluation.record_file import RecordWriter
 from reasoned_explorer.evaluation.scoring import MissionScore, outcome_of, score
 from reasoned_explorer.evaluation.track import looks_of, track_of
@@ -40,10 +42,12 @@ from reasoned_explorer.model import (
 from reasoned_explorer.model.checks import kind_faults, path_of
 from reasoned_explorer.model.record import EpisodeRecord, MissionEnd, MissionHeader, MissionSummary, StepRecord
 from reasoned_explorer.model.stopping import stop_if_asked
+from reasoned_explorer.perception import Captioner
 from reasoned_explorer.perception.context import CaptionerContext
 from reasoned_explorer.perception.registry import CAPTIONERS
 from reasoned_explorer.planning.registry import make_planner
 from reasoned_explorer.simulation.eyes import Eyes
+from reasoned_explorer.simulation.painter import Painter
 from reasoned_explorer.simulation.vehicle import SimulatedVehicle, check_on_map, check_start
 from reasoned_explorer.task.goal_spec import GoalSpec
 from reasoned_explorer.task.judge import Judge, TrackReport
@@ -102,6 +106,7 @@ class Mission:
         start: Where it begins; None draws a start by the seed.
         judge: A judge of this goal, world, vehicle and success radius from an earlier mission, to share its work with.
         desk: Makes the callers of models; None where the settings name none, or for one without cache, tape and budget.
+        pictures: Folder in which the pictures of all views are kept; None keeps none.
 
     Raises:
         GoalError: If the goal cannot be understood.
@@ -123,6 +128,7 @@ class Mission:
         start: Pose | None = None,
         judge: Judge | None = None,
         desk: ModelDesk | None = None,
+        pictures: Path | None = None,
     ) -> None:
         _check_arguments(world, settings, start)
         self.settings = settings if settings is not None else MissionSettings()
@@ -138,7 +144,7 @@ class Mission:
         self.start = self._start(start, self.judge.traveller)
         stop_if_asked()
         self.clock = CLOCKS[self.settings.clock]()
-        self._desk = desk
+        self._desk, self._pictures = desk, pictures
         # Privileged minds and the guide alone may read the truth; they are the only ones that ask for it.
         truth = OracleTruth(self.atlas, self.judge, self.profile, self.settings.explorer)
         self.explorer: Explorer | Guide
@@ -235,10 +241,20 @@ class Mission:
         latency = latency_profile(settings.latency)
         callers: list[Caller] = []
 
-        def model_minds(name: str) -> Minds:
+        def caller_of(name: str) -> tuple[ModelDesk, Caller]:
             self._desk = self._desk or ModelDesk()
             callers.append(self._desk.caller(name, self.clock, ledger))
-            return prompted_minds(callers[-1], name=name, abilities=self._desk.abilities(name), seed=settings.seed)
+            return self._desk, callers[-1]
+
+        def model_minds(name: str) -> Minds:
+            desk, caller = caller_of(name)
+            desk.check_mind(name)
+            return prompted_minds(caller, name=name, abilities=desk.abilities(name), seed=settings.seed)
+
+        def model_captioner(name: str) -> Captioner:
+            desk, caller = caller_of(name)
+            world = self.atlas.world
+            return desk.captioner(name, caller, seed=settings.seed, place=None if world.origin is None else world.name)
 
         minds = make_minds(
             MindContext(self.clock, latency, ledger, settings.seed, truth, model_minds),
@@ -257,7 +273,14 @@ class Mission:
                 for index, seconds in enumerate(spent_s)
             )
 
-        captioner = CAPTIONERS.load(settings.captioner)(CaptionerContext(self.clock, settings.seed, charge_captions))
+        captioner: Captioner
+        if is_model_name(settings.captioner):
+            captioner = model_captioner(settings.captioner)
+        else:
+            context = CaptionerContext(self.clock, settings.seed, charge_captions)
+            captioner = CAPTIONERS.load(settings.captioner)(context)
+        if self._pictures is not None:
+            captioner = KeepingCaptioner(captioner, self._pictures)
         planner = make_planner(settings.planner, minds, settings.planner_settings)
         self._labels = (planner.label, minds.label, captioner.label)
         explorer = with_overrides(settings.explorer, planner)
@@ -267,9 +290,17 @@ class Mission:
         return Explorer(parts, explorer)
 
     def _vehicle(self) -> SimulatedVehicle:
-        eyes = Eyes(self.atlas)
+        settings, painter = self.settings, None
+        if self._pictures is not None or is_model_name(settings.captioner):
+            painter = Painter(self.atlas, side_px=settings.picture_px, conditions=settings.conditions)
         return SimulatedVehicle(
-            self.atlas, self.profile, self.start, clock=self.clock, eyes=eyes, seed=self.settings.seed
+            self.atlas,
+            self.profile,
+            self.start,
+            clock=self.clock,
+            eyes=Eyes(self.atlas),
+            painter=painter,
+            seed=settings.seed,
         )
 
     @property

@@ -16,6 +16,7 @@ from reasoned_explorer.model import Fault, Gathering, InputError, SettingsError,
 from reasoned_explorer.perception.registry import CAPTIONERS
 from reasoned_explorer.planning import Planner
 from reasoned_explorer.planning.registry import make_planner
+from reasoned_explorer.simulation.painter import faults_of_pictures
 from reasoned_explorer.task.judge import faults_of_radius
 from reasoned_explorer.vehicles.registry import vehicle_profile
 
@@ -37,7 +38,7 @@ class MissionSettings:
         visionary: Who imagines.
         evaluator: Who scores.
         checker: Who notices the goal.
-        captioner: A registered captioner.
+        captioner: A registered captioner, or a model that reads pictures such as ``hf:microsoft/kosmos-2-patch14-224``.
         vehicle: A registered vehicle profile.
         latency: A latency profile: how long modelled calls take.
         clock: ``virtual``, ``mixed`` or ``real``; where a model is called, one of the last two.
@@ -45,6 +46,8 @@ class MissionSettings:
         success_radius_m: R of the judge, metres, in [1, 50].
         seed: Of the mission: everything that is drawn is keyed by it; in [0, 2^64).
         agent: One of `AGENTS`; the guide asks no planner, mind or captioner.
+        picture_px: Side of the pictures that are taken, pixels, in [16, 4096].
+        conditions: Time of day and weather in them: ``clear``, ``overcast``, ``dusk``, ``fog`` or ``rain``.
 
     A planner may bring settings of the agent with it (`planning.Planner`); a mission's own ``settings`` are those that
     are in force. Names and numbers are checked by whoever uses them, together with the rest of its input (`errors_of`).
@@ -64,6 +67,8 @@ class MissionSettings:
     success_radius_m: float = 15.0
     seed: int = 0
     agent: str = "explorer"
+    picture_px: int = 448
+    conditions: str = "clear"
 
 
 def errors_of(settings: MissionSettings) -> tuple[InputError, ...]:
@@ -82,6 +87,7 @@ def errors_of(settings: MissionSettings) -> tuple[InputError, ...]:
     wrong = {fault.what.partition(" is ")[0] for fault in faults}
     if "success_radius_m" not in wrong:
         faults += faults_of_radius(settings.success_radius_m)
+    faults += faults_of_pictures(settings.picture_px, settings.conditions)
     if faults:
         found.add(SettingsError("mission settings", faults))
     for name, check in _name_checks(settings):
@@ -89,7 +95,7 @@ def errors_of(settings: MissionSettings) -> tuple[InputError, ...]:
             found.check(check)
     if not wrong & {"minds", "visionary", "evaluator", "checker"}:
         found.check(partial(check_roles, **minds_of(settings)))
-        if "clock" not in wrong:
+        if not wrong & {"clock", "captioner"}:
             found.check(partial(_check_clock, settings))
     if not wrong & {"planner", "planner_settings", "explorer"}:
         found.check(lambda: with_overrides(settings.explorer, _planner_on_trial(settings)))
@@ -97,7 +103,7 @@ def errors_of(settings: MissionSettings) -> tuple[InputError, ...]:
 
 
 def minds_of(settings: MissionSettings) -> dict[str, str]:
-    """Return who fills each role."""
+    """Return who fills each role of a mind."""
     return {
         "visionary": settings.visionary or settings.minds,
         "evaluator": settings.evaluator or settings.minds,
@@ -152,21 +158,27 @@ def _name_checks(settings: MissionSettings) -> list[tuple[str, Callable[[], obje
 
 def models_of(settings: MissionSettings) -> tuple[str, ...]:
     """Return the models that a mission calls, each once."""
-    return tuple(dict.fromkeys(name for name in minds_of(settings).values() if is_model_name(name)))
+    names = (*minds_of(settings).values(), settings.captioner)
+    return tuple(dict.fromkeys(name for name in names if is_model_name(name)))
 
 
 def _check_mind(name: str) -> None:
     if not is_model_name(name):
         MINDS.load(name)
-    elif not name.partition(":")[2].strip():
-        raise SettingsError("minds", [Fault(f"{name!r}", "a model's name behind the colon, e.g. openai:gpt-4o-mini")])
+    else:
+        _check_model("minds", name)
+
+
+def _check_model(role: str, name: str) -> None:
+    if not name.partition(":")[2].strip():
+        raise SettingsError(role, [Fault(f"{name!r}", "a model's name behind the colon, e.g. openai:gpt-4o-mini")])
 
 
 def _check_captioner(name: str) -> None:
     if is_model_name(name):
-        fault = Fault(f"captioner {name}", "a simulated captioner", "the embedded simulator takes no pictures yet")
-        raise SettingsError("captioner", [fault])
-    CAPTIONERS.load(name)
+        _check_model("captioner", name)
+    else:
+        CAPTIONERS.load(name)
 
 
 def _check_clock(settings: MissionSettings) -> None:

@@ -1,6 +1,8 @@
 """The models that missions call by name: made once, looked into once, and what all their calls have in common."""
 
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -14,13 +16,17 @@ from reasoned_explorer.calls.chat import ChatAnswer, ChatModel, ChatRequest, is_
 from reasoned_explorer.calls.endpoint import AskingSettings
 from reasoned_explorer.calls.ledger import Ledger
 from reasoned_explorer.calls.openai_model import openai_model
+from reasoned_explorer.calls.prices import OWN_MACHINE, Price, PriceTable
 from reasoned_explorer.calls.tape import TapePlayer, TapeRecorder
 from reasoned_explorer.clock import Clock, run_live
 from reasoned_explorer.model import Fault, PartError, RecordError, SettingsError
 from reasoned_explorer.model.checks import is_there
+from reasoned_explorer.perception.prompted import PromptedCaptioner, captioner_for
 
 #: Of models on this machine.
 LOCAL_PREFIX = "hf:"
+#: So many calls are made at once to see how many go on at once; a server is taken to have no limit from this share on.
+_TOGETHER, _UNLIMITED_SHARE = 8, 0.75
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,12 +43,17 @@ class KnownModel:
     abilities: Abilities
     priced: bool
 
+    @property
+    def price(self) -> Price | None:
+        """Of its tokens, or None where it is not known."""
+        return getattr(self.model, "price", OWN_MACHINE if self.model.is_local else None)
+
 
 class _Taped:
     """Stands for the model whose answers are on a tape; there is nobody to ask."""
 
-    def __init__(self, name: str, fingerprint: str) -> None:
-        self.name, self.fingerprint, self.is_local = name, fingerprint, True
+    def __init__(self, name: str, fingerprint: str, family: str) -> None:
+        self.name, self.fingerprint, self.is_local, self.family = name, fingerprint, True, family
 
     async def ask(self, request: ChatRequest) -> ChatAnswer:  # noqa: ARG002 - the protocol's
         """Answer with a fault: whatever is not on the tape is not known."""
@@ -54,27 +65,39 @@ class ModelDesk:
 
     Args:
         base_url: Where models of ``openai:…`` are; None for ``OPENAI_BASE_URL`` or OpenAI's own.
+        key_variable: Environment variable of their key; None for ``OPENAI_API_KEY``.
+        prices: What they cost; None for the table that comes with this package.
         cache: Of answers that may be used again.
         budget: Of all calls.
         replay: A tape to take every answer from; no model is needed then.
+        past: The tape of a mission that ended early and is gone on with: what was answered then is not asked again.
         asking: How endpoints are asked.
-        known: Models that another desk has looked into.
+        abilities: What models are known to be able to; they are not tried again.
+        pictures_may_leave: Whether pictures of real places may be sent to other machines: a person has said so.
     """
 
     def __init__(
         self,
         *,
         base_url: str | None = None,
+        key_variable: str | None = None,
+        prices: PriceTable | None = None,
         cache: AnswerCache | None = None,
         budget: Budget | None = None,
         replay: TapePlayer | None = None,
+        past: TapePlayer | None = None,
         asking: AskingSettings | None = None,
-        known: Iterable[KnownModel] = (),
+        abilities: Mapping[str, Abilities] | None = None,
+        pictures_may_leave: bool = False,
     ) -> None:
+        self.pictures_may_leave = pictures_may_leave
+        self._key_variable, self._prices = key_variable, prices
         self._base_url, self._cache, self._budget, self._player = base_url, cache, budget, replay
         self._recorder: TapeRecorder | None = None
+        self._past = past
         self._asking = asking
-        self._known = {each.model.name: each for each in known}
+        self._abilities = {**_taped_abilities(past), **(abilities or {})}
+        self._known: dict[str, KnownModel] = {}
         # Weakly: a desk outlives many missions, and a tape is begun right after the callers of one were made.
         self._callers: WeakSet[Caller] = WeakSet()
 
@@ -105,10 +128,18 @@ class ModelDesk:
             from reasoned_explorer.calls.local import load_local
 
             local = load_local(name)
-            return KnownModel(local, _found_out(local, together=2), priced=True)
-        model = openai_model(name, base_url=self._base_url, settings=self._asking)
-        abilities = _found_out(model)
-        return KnownModel(model.asking(abilities.structure), abilities, model.price is not None)
+            return KnownModel(local, self._abilities.get(name) or _found_out(local, together=2), priced=True)
+        model = openai_model(
+            name,
+            base_url=self._base_url,
+            key_variable=self._key_variable,
+            settings=self._asking,
+            prices=self._prices,
+        )
+        abilities = self._abilities.get(name) or _found_out(model)
+        at_once = _most_at_once(abilities) if model.is_local else None
+        asked = model.asking(abilities.structure, most_at_once=at_once)
+        return KnownModel(asked, abilities, model.price is not None)
 
     def caller(self, name: str, clock: Clock, ledger: Ledger) -> Caller:
         """Return who asks a model for a mission.
@@ -118,9 +149,46 @@ class ModelDesk:
         """
         (known,) = self.prepare([name])
         tape = self._player or self._recorder
-        caller = Caller(known.model, clock=clock, ledger=ledger, cache=self._cache, tape=tape, budget=self._budget)
+        caller = Caller(
+            known.model,
+            clock=clock,
+            ledger=ledger,
+            cache=self._cache,
+            tape=tape,
+            past=self._past,
+            budget=self._budget,
+        )
         self._callers.add(caller)
         return caller
+
+    def check_mind(self, name: str) -> None:
+        """Check that a model, which is ready, can be a mind.
+
+        Raises:
+            SettingsError: If it describes pictures and does nothing else.
+        """
+        if getattr(self._known[name].model, "only_describes", False):
+            fault = Fault(f"{name} describes pictures only", "a model that answers questions", "it may be a captioner")
+            raise SettingsError("minds", [fault])
+
+    def captioner(self, name: str, caller: Caller, *, seed: int, place: str | None) -> PromptedCaptioner:
+        """Return the captioner that shows pictures to a model.
+
+        Args:
+            name: Of the model, which is ready.
+            caller: Of it.
+            seed: Of the mission.
+            place: The real place that the pictures are of, or None for one that is nowhere on earth.
+
+        Raises:
+            SettingsError: If the model reads no pictures, or they would leave this machine and may not.
+        """
+        model = self._known[name].model
+        if place is not None and not model.is_local and not self.pictures_may_leave:
+            what = f"pictures of {place} would be sent to another machine, for {name}"
+            remedy = "say --yes, or ModelDesk(pictures_may_leave=True)"
+            raise SettingsError("captioner", [Fault(what, "a person's consent", remedy)])
+        return captioner_for(model, caller, seed=seed)
 
     def abilities(self, name: str) -> Abilities:
         """Return what a model that is ready can do."""
@@ -137,23 +205,71 @@ class ModelDesk:
             RecordError: If there is such a file, or it cannot be made.
         """
         models = {
-            name: {"fingerprint": known.model.fingerprint, "abilities": asdict(known.abilities)}
+            name: {
+                "fingerprint": known.model.fingerprint,
+                "abilities": asdict(known.abilities),
+                "family": getattr(known.model, "family", ""),
+            }
             for name, known in self._known.items()
         }
-        self._recorder = TapeRecorder(path, about={"mission": dict(mission), "models": models})
-        for caller in self._callers:
-            caller.record_to(self._recorder)
-        return self._recorder
+        return self._record_to(TapeRecorder(path, about={"mission": dict(mission), "models": models}))
 
-    def check_replay(self, mission: Mapping[str, Any]) -> None:
-        """Check that a mission is the one that is on the tape.
+    def go_on(self, path: Path) -> TapeRecorder:
+        """Write what callers ask from now on to the tape that the mission is gone on with from.
+
+        Raises:
+            RecordError: If it is no tape, or cannot be written.
+        """
+        return self._record_to(TapeRecorder.going_on(path))
+
+    def _record_to(self, recorder: TapeRecorder) -> TapeRecorder:
+        self._recorder = recorder
+        for caller in self._callers:
+            caller.record_to(recorder)
+        return recorder
+
+    @contextmanager
+    def under_way(self, tape: Path | None, mission: Mapping[str, Any]) -> Iterator[None]:
+        """Keep the calls of one mission of many on a tape while it runs, or go on from what is there.
+
+        The callers are to be made inside. A tape of another mission, or that cannot be read, is begun anew.
+
+        Args:
+            tape: Where, in a folder that is there; None keeps none.
+            mission: What the mission is.
+
+        Raises:
+            RecordError, RecordWriteError: If the tape cannot be written.
+        """
+        if tape is None:
+            yield
+            return
+        self._past = _past_of(tape, mission)
+        self._callers = WeakSet()
+        if self._past is None:
+            tape.unlink(missing_ok=True)
+        recorder = self.record(tape, mission) if self._past is None else self.go_on(tape)
+        try:
+            with recorder:
+                yield
+        finally:
+            self._past = self._recorder = None
+
+    @property
+    def denied(self) -> str | None:
+        """Why a call might not begin: the budget is spent; None while it is not."""
+        return None if self._budget is None else self._budget.denied
+
+    def check_taped(self, mission: Mapping[str, Any]) -> None:
+        """Check that a mission is the one that is on the tape which is replayed or gone on with.
 
         Raises:
             RecordError: With everything that is another.
         """
-        if self._player is None:
+        tape = self._player or self._past
+        if tape is None:
             return
-        taped: Mapping[str, Any] = self._player.about.get("mission", {})
+        taped: Mapping[str, Any] = tape.about.get("mission", {})
         faults = [
             Fault(f"{key} is {mission.get(key)!r:.80}", f"{taped.get(key)!r:.80}, as on the tape")
             for key in dict.fromkeys([*taped, *mission])
@@ -163,33 +279,71 @@ class ModelDesk:
             raise RecordError("replay", faults)
 
 
-def _found_out(model: ChatModel, *, together: int = 8) -> Abilities:
+def _found_out(model: ChatModel, *, together: int = _TOGETHER) -> Abilities:
     abilities = run_live(lambda: probe(model, together=together))
     if not abilities.answers:
         raise PartError(model.name, f"it does not answer: {'; '.join(abilities.faults) or 'no reason given'}")
     return abilities
 
 
+def _taped_abilities(tape: TapePlayer | None) -> dict[str, Abilities]:
+    """Return what the models on a tape were able to, as far as it says: a mission goes on asking as it began."""
+    models = {} if tape is None else tape.about.get("models", {})
+    with suppress(TypeError, KeyError, AttributeError):
+        return {name: _abilities_of(about) for name, about in models.items()}
+    return {}
+
+
+def _abilities_of(about: Mapping[str, Any]) -> Abilities:
+    return Abilities(**{**about["abilities"], "faults": tuple(about["abilities"].get("faults", ()))})
+
+
+def _past_of(tape: Path, mission: Mapping[str, Any]) -> TapePlayer | None:
+    """Return the tape of an earlier part of a mission, or None where there is none of it."""
+    try:
+        past = TapePlayer(tape) if is_there(tape) else None
+    except RecordError:
+        return None
+    return past if past is not None and past.about.get("mission") == mission else None
+
+
+def _most_at_once(abilities: Abilities) -> int | None:
+    """Return how many calls at once a server on this machine bears; None where it was not seen to have a limit.
+
+    Most of them answer one or a few calls at a time, and what waits in their line runs out of time there, is given up
+    and is worked on all the same. Twice as many as go on at once keep such a server busy; the others wait here, where
+    waiting costs no try. Elsewhere the measure says too little: a network's delays look like a limit.
+    """
+    limited = abilities.parallel < _UNLIMITED_SHARE * _TOGETHER
+    return math.ceil(2.0 * abilities.parallel) if limited else None
+
+
 def _taped(name: str, player: TapePlayer) -> KnownModel:
     about = player.about.get("models", {}).get(name)
     try:
-        abilities = Abilities(**{**about["abilities"], "faults": tuple(about["abilities"].get("faults", ()))})
-        return KnownModel(_Taped(name, about["fingerprint"]), abilities, priced=True)
+        return KnownModel(
+            _Taped(name, about["fingerprint"], about.get("family", "")), _abilities_of(about), priced=True
+        )
     except (TypeError, KeyError) as error:
         held = ", ".join(player.about.get("models", {})) or "none"
         fault = Fault(f"no calls of {name} on the tape", f"one of those on it: {held}")
         raise RecordError("replay", [fault]) from error
 
 
-def recording_faults(record: Path | None, replay: Path | None) -> list[Fault]:
+def recording_faults(record: Path | None, replay: Path | None, resume: Path | None = None) -> list[Fault]:
     """Return what is wrong with the tapes that were asked for, as far as can be told without opening them."""
     faults = []
-    if record is not None and replay is not None:
-        faults.append(Fault("--record beside --replay", "one of the two"))
+    given = {"--record": record, "--replay": replay, "--resume": resume}
+    named = [name for name, path in given.items() if path is not None]
+    if len(named) > 1:
+        faults.append(Fault(" beside ".join(named), "one of them"))
     if record is not None and is_there(record):
         faults.append(Fault(f"{record} is there already", "a name without a file", "give another name, or delete it"))
-    if replay is not None and not is_there(replay):
-        faults.append(Fault(f"there is no file {replay}", "a tape that --record wrote"))
+    faults += [
+        Fault(f"there is no file {path}", "a tape that --record wrote")
+        for path in (replay, resume)
+        if path is not None and not path.is_file()
+    ]
     return faults
 
 

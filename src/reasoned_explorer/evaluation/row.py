@@ -40,12 +40,13 @@ class MissionRow:
         calls: Of models, all roles.
         tokens_in: Sent to models.
         tokens_out: Received from them.
-        usd: US dollars.
+        usd: US dollars, of the calls whose cost is known.
         evaluator_sum: Sum of all scores that the evaluator gave, 1 to 5 each.
         evaluator_count: How many scores.
         small_collisions: With what is less than 3 m long (benches, trunks, people).
         large_collisions: With walls, vehicles and other large things.
         score: Its metrics.
+        unpriced: How many calls there were whose cost is not known: no price, or no answer.
     """
 
     method: str
@@ -76,6 +77,7 @@ class MissionRow:
     small_collisions: int
     large_collisions: int
     score: MissionScore
+    unpriced: int = 0
 
     @property
     def level(self) -> int:

@@ -6,12 +6,14 @@ same call takes the same time whatever else is asked.
 """
 
 import math
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 from reasoned_explorer.model.draws import key_of, normal
 from reasoned_explorer.model.errors import Fault, SettingsError, UnknownNameError
 
+_SECONDS = re.compile(r"\d{1,4}(?:\.\d{1,6})?s", re.ASCII)
 #: The roles that a call can have.
 ROLES = ("caption", "visionary", "evaluator", "checker")
 
@@ -124,11 +126,14 @@ LATENCY_PROFILES: tuple[str, ...] = tuple(sorted(_PROFILES))
 
 
 def latency_profile(name: str) -> LatencyProfile:
-    """Return a profile by its name.
+    """Return a profile by its name, or the one of calls that all take the same time, e.g. ``"0.8s"``.
 
     Raises:
         UnknownNameError: If there is none; it names the near misses.
     """
+    if _SECONDS.fullmatch(name):
+        same = RoleLatency(float(name[:-1]))
+        return LatencyProfile(name, f"every call takes {name[:-1]} s", same, same, same, same)
     if name not in _PROFILES:
-        raise UnknownNameError("latency profile", name, LATENCY_PROFILES)
+        raise UnknownNameError("latency profile", name, (*LATENCY_PROFILES, "0.8s"))
     return _PROFILES[name]

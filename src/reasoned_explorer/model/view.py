@@ -29,7 +29,8 @@ class View:
         key: What tells this view from all others of a mission: (step, look, index).
         pose: Of the camera, facing where it looks.
         camera: The camera.
-        image: RGB picture, shape (height, width, 3), uint8, or None where the vehicle takes none.
+        image: RGB picture, shape (height, width, 3), uint8, or None where the vehicle takes none. It may have more
+            pixels than the camera says, of the same field of view.
         content: What a simulator knows to be in the view; only the simulated captioner may read it.
     """
 

@@ -54,6 +54,14 @@ class Eyes(Protocol):
         ...
 
 
+class Painter(Protocol):
+    """What takes pictures (`simulation.painter`)."""
+
+    def paint(self, pose: Pose, camera: Camera) -> NDArray[np.uint8]:
+        """Return what a camera at a pose sees, RGB, shape (height, width, 3)."""
+        ...
+
+
 def check_on_map(bounds: "Bounds", pose: Pose) -> None:
     """Check what can be known of a start without looking at what stands there.
 
@@ -107,6 +115,7 @@ class SimulatedVehicle(Vehicle):
         start: Where it truly is at the start; the height is the profile's.
         clock: Time passes on it.
         eyes: What its cameras see.
+        painter: Takes the pictures of its cameras; None for views without pictures.
         seed: Of the mission; all draws of noise are keyed by it.
         noise: How its sensors err, or the name of a preset.
         faults: For tests: legs (counted from 0) at which the link fails, each with the reason.
@@ -124,6 +133,7 @@ class SimulatedVehicle(Vehicle):
         *,
         clock: Clock,
         eyes: Eyes,
+        painter: Painter | None = None,
         seed: int,
         noise: SensorNoise | str = "rtk-fixed",
         faults: Mapping[int, str] | None = None,
@@ -132,7 +142,7 @@ class SimulatedVehicle(Vehicle):
         self.profile = profile
         self._atlas = atlas
         self._clock = clock
-        self._eyes = eyes
+        self._eyes, self._painter = eyes, painter
         self._faults = dict(faults or {})
         self.noise = sensor_noise(noise) if isinstance(noise, str) else noise
         ground = None if profile.flies or not profile.collides else _ground_on_foot(atlas)
@@ -179,8 +189,9 @@ class SimulatedVehicle(Vehicle):
             bearing_rad = bearing_between_rad(self.pose.heading_rad, heading_rad)
             true_camera = self.true_pose.facing(self.true_pose.heading_rad + bearing_rad)
             content = self._eyes.look(true_camera, self.profile.camera)
+            image = None if self._painter is None else self._painter.paint(true_camera, self.profile.camera)
             key = (self._legs, self._looks, index)
-            taken[index] = View(key, self.pose.facing(heading_rad), self.profile.camera, content=content)
+            taken[index] = View(key, self.pose.facing(heading_rad), self.profile.camera, image, content)
         self._looks += 1
         self._body.wait(self.profile.look_s)
         if duration_s > 0.0:

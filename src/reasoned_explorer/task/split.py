@@ -17,6 +17,10 @@ LEVELS = (1, 2, 3, 4)
 SPLIT_VERSION = 1
 
 
+#: What a generated place is part of.
+GENERATED = "generated"
+
+
 @dataclass(frozen=True, slots=True)
 class Place:
     """Where episodes of a split take place: a generated world, or a neighbourhood of a real place.
@@ -32,7 +36,7 @@ class Place:
     name: str
     source: str
     bbox: tuple[float, float, float, float] | None = None
-    city: str = "generated"
+    city: str = GENERATED
     district: str = ""
 
 

@@ -88,7 +88,7 @@ def test_the_fingerprint_tells_other_weights_and_other_precision(tmp_path: Path,
     one = load_local(f"hf:{folder}").fingerprint.removeprefix(f"hf:{folder} ")
     same = load_local(f"hf:{copied}").fingerprint.removeprefix(f"hf:{copied} ")
     assert one == same
-    halved = load_local(f"hf:{folder}", LocalSettings(dtype="bfloat16")).fingerprint.removeprefix(f"hf:{folder} ")
+    halved = load_local(f"hf:{folder}", LocalSettings(dtype="float16")).fingerprint.removeprefix(f"hf:{folder} ")
     assert halved != one
     content = bytearray(file.read_bytes())
     content[-1] ^= 1

@@ -67,6 +67,26 @@ def test_views_are_captioned_in_one_batch_as_they_are_one_by_one(local: Local, k
 
 
 @pytest.mark.parametrize("kind", SEEING)
+@pytest.mark.parametrize("views", [3, 5, 8])
+def test_all_views_go_through_the_network_together(local: Local, kind: str, views: int) -> None:
+    model = local(kind, LocalSettings(most=views, linger_s=1.0))
+    rows: list[int] = []
+
+    def count(_layer: Any, _arguments: Any, logits: Any) -> None:
+        rows.append(len(logits))
+
+    # Kosmos-2 writes with a part of itself; the layer that chooses words is used by every kind.
+    hook = model._generator.model.get_output_embeddings().register_forward_hook(count)
+    try:
+        answers = ask(model, [looked_at(number) for number in range(views)])
+    finally:
+        hook.remove()
+    assert [answer.fault for answer in answers] == [None] * views
+    # One pass for the pictures and the first word, and one for each further word, each of all views.
+    assert rows == [views] * max(answer.tokens_out for answer in answers)
+
+
+@pytest.mark.parametrize("kind", SEEING)
 def test_what_is_said_depends_on_the_picture(local: Local, kind: str) -> None:
     one, other = ask(local(kind), [looked_at(number, top_logprobs=3) for number in (1, 2)])
     assert one.tokens_in == other.tokens_in

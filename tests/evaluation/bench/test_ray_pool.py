@@ -41,14 +41,14 @@ def test_a_lost_worker_loses_no_mission(
 
     marker = str(tmp_path / "died")
 
-    def dies_once(plan: BenchPlan, task: Any) -> Any:
+    def dies_once(plan: BenchPlan, task: Any, access: Any) -> Any:
         import os
         import signal
 
         try:
             os.close(os.open(marker, os.O_CREAT | os.O_EXCL))
         except FileExistsError:
-            return run_task(plan, task)
+            return run_task(plan, task, access)
         os.kill(os.getpid(), signal.SIGKILL)
         return None
 

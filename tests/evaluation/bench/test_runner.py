@@ -180,10 +180,10 @@ def test_a_mission_that_kills_its_process_has_failed_and_the_others_go_on(
         "if 'REX_TEST_CRASH' in os.environ and '--multiprocessing-fork' in sys.argv:\n"
         "    import reasoned_explorer.evaluation.bench.worker as worker\n"
         "    whole = worker.run_task\n"
-        "    def run_task(plan, task):\n"
+        "    def run_task(plan, task, access):\n"
         "        if task.mission_id == os.environ['REX_TEST_CRASH']:\n"
         "            os.kill(os.getpid(), signal.SIGKILL)\n"
-        "        return whole(plan, task)\n"
+        "        return whole(plan, task, access)\n"
         "    worker.run_task = run_task\n"
     )
     done = {each.task.mission_id: each for each in run_in_processes(small_plan, tasks, workers=1)}

@@ -66,7 +66,6 @@ def hub_name(name: str) -> str | None:
     return name.removeprefix(PREFIX) if name.startswith(PREFIX) and len(name) > len(PREFIX) else None
 
 
-@cache
 def load_local(name: str, settings: LocalSettings | None = None) -> LocalModel:
     """Return a model that runs on this machine, loaded once in a process.
 
@@ -88,7 +87,7 @@ def load_local(name: str, settings: LocalSettings | None = None) -> LocalModel:
         if find_spec(package) is None:
             raise MissingDependencyError(name, package, _INSTALL)
     try:
-        return _load(name, where, settings or LocalSettings())
+        return _load(name, where, settings or LocalSettings())  # kept: the second time it is there
     except (OSError, ValueError, ImportError, RuntimeError, KeyError) as error:
         reason = " ".join(str(error).split())
         fault = Fault(
@@ -112,6 +111,7 @@ class _Source:
         return kind.from_pretrained(self.where, revision=self.revision, local_files_only=self.is_here, **options)
 
 
+@cache
 def _load(name: str, where: str, settings: LocalSettings) -> LocalModel:
     if Path(where).is_dir():
         return _loaded(name, _Source(where, "main", is_here=True), settings)
@@ -153,6 +153,7 @@ def _loaded(name: str, source: _Source, settings: LocalSettings) -> LocalModel:
         fingerprint=f"{name} {version} {str(dtype).removeprefix('torch.')} {device.type}",
         family=family,
         sees=sees,
+        only_describes=isinstance(coder, GroundingCoder),
         most=settings.most,
         linger_s=settings.linger_s,
     )

@@ -22,6 +22,7 @@ class LocalModel:
         fingerprint: Of the weights and how they are run.
         family: What transformers calls the kind of model, e.g. ``"kosmos-2"``.
         sees: It reads pictures.
+        only_describes: It describes pictures and does nothing else: no question without one, no instructions.
         most: Questions in a batch, at most.
         linger_s: Nothing more having arrived for so long, seconds, a batch is complete.
     """
@@ -36,10 +37,12 @@ class LocalModel:
         fingerprint: str,
         family: str,
         sees: bool,
+        only_describes: bool = False,
         most: int = 16,
         linger_s: float = 0.01,
     ) -> None:
         self.name, self.fingerprint, self.family, self.sees = name, fingerprint, family, sees
+        self.only_describes = only_describes
         self.device = str(generator.model.device)
         #: How many questions each batch held so far.
         self.batches: list[int] = []

@@ -61,6 +61,9 @@ def notes_of(rows: Iterable[MissionRow], *, total: int) -> Notes:
         once.append(f"Captions are a simulated captioner’s{';' if wrong else ','} {rates}.")
     if any(row.ct_label.startswith("modelled") for row in rows):
         once.append("CT is modelled: each call is charged what a latency profile says, not what it took.")
+    unpriced = sum(row.unpriced for row in rows)
+    if unpriced:
+        once.append(f"What {unpriced:,} calls cost is not known (no price, or no answer): USD are the least it can be.")
     if bounds_among(rows):
         once.append("oracle, foresight and perfect-halt read the truth: bounds, no methods.")
     once.append(_about_intervals(len({row.place for row in rows})))

@@ -6,12 +6,12 @@ very same missions, and so that two runs can be held against each other.
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any
 
-from reasoned_explorer.evaluation.methods import Method, method
+from reasoned_explorer.evaluation.methods import Method, method, models_called
 from reasoned_explorer.evaluation.mission_settings import MissionSettings, errors_of
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.model import Fault, Gathering, InputError, SettingsError
@@ -123,14 +123,18 @@ class BenchPlan:
 
         Missions of two runs are the same where these are; who does what in them is another matter (`differences`).
         """
-        found = {}
-        for index, item in enumerate(self.split.episodes):
-            plain = {**item.episode.as_dict(), "world_digest": self.split.world_digests[item.place]}
-            plain.pop("reference_length_m")  # follows from the rest
-            for seed in self.seeds:
-                said = json.dumps({**plain, "again": seed}, sort_keys=True, allow_nan=False)
-                found[self.mission_id(index, seed)] = hashlib.sha256(said.encode()).hexdigest()
-        return found
+        return {
+            self.mission_id(index, seed): self._fingerprint(index, seed)
+            for index in range(len(self.split.episodes))
+            for seed in self.seeds
+        }
+
+    def _fingerprint(self, index: int, seed: int) -> str:
+        item = self.split.episodes[index]
+        plain = {**item.episode.as_dict(), "world_digest": self.split.world_digests[item.place]}
+        plain.pop("reference_length_m")  # follows from the rest
+        said = json.dumps({**plain, "again": seed}, sort_keys=True, allow_nan=False)
+        return hashlib.sha256(said.encode()).hexdigest()
 
     def differences(self, other: "BenchPlan") -> list[str]:
         """Return in words what else two plans have their missions do differently: minds, captions, times, limits."""
@@ -166,6 +170,17 @@ class BenchPlan:
         plain["split"] = self.split.digest
         plain.pop("keep_traces")
         return hashlib.sha256(json.dumps(plain, sort_keys=True, allow_nan=False).encode()).hexdigest()
+
+    def digest_of(self, task: Task) -> str:
+        """SHA-256 over all that decides one mission, hexadecimal; other methods and missions of the run do not."""
+        plain = {"version": PLAN_VERSION, "task": asdict(task), "settings": asdict(self.settings_of(task))}
+        plain["mission"] = self._fingerprint(task.episode, task.seed)
+        return hashlib.sha256(json.dumps(plain, sort_keys=True, allow_nan=False).encode()).hexdigest()
+
+    @property
+    def models(self) -> tuple[str, ...]:
+        """The models that its missions call, each once."""
+        return models_called(self.methods, self.base)
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for a file."""
@@ -206,3 +221,12 @@ class BenchPlan:
         except (KeyError, TypeError) as error:
             fault = Fault(f"{type(error).__name__}: {error}", "a plan as BenchPlan.as_dict writes it")
             raise InputError("benchmark", [fault]) from error
+
+
+def longer(plan: BenchPlan, methods: Sequence[str]) -> BenchPlan:
+    """Return a plan with more methods behind those that it has.
+
+    Raises:
+        InputError: If a method cannot be run.
+    """
+    return replace(plan, methods=(*plan.methods, *(name for name in methods if name not in plan.methods)))

@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
 from reasoned_explorer.evaluation.bench.worker import Done, failed_row, run_task
 from reasoned_explorer.evaluation.mission import RARELY
+from reasoned_explorer.evaluation.model_access import PLAIN_ACCESS, ModelAccess
 from reasoned_explorer.model.stopping import stop_if_asked
 
 T = TypeVar("T")
@@ -29,32 +30,38 @@ _LOOK_EVERY_S = 0.1
 _BLAS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 _plan: BenchPlan | None = None
+_access = PLAIN_ACCESS
 
 
-def run_here(plan: BenchPlan, tasks: Sequence[Task]) -> Iterator[Done]:
-    """Run missions one after the other in this process."""
+def run_here(plan: BenchPlan, tasks: Sequence[Task], access: ModelAccess = PLAIN_ACCESS) -> Iterator[Done]:
+    """Run missions one after the other in this process, as long as calls of models may begin."""
     for task in tasks:
         stop_if_asked()
-        yield run_task(plan, task)
+        done = run_task(plan, task, access)
+        yield done
+        if done.denied is not None:
+            return
 
 
-def run_in_processes(plan: BenchPlan, tasks: Sequence[Task], *, workers: int) -> Iterator[Done]:
+def run_in_processes(
+    plan: BenchPlan, tasks: Sequence[Task], access: ModelAccess = PLAIN_ACCESS, *, workers: int
+) -> Iterator[Done]:
     """Run missions in several processes; they come in the order in which they end.
 
     A process that dies takes nothing with it but the missions that it was in: these are tried again. Processes whose
-    parent is gone end by themselves.
+    parent is gone end by themselves. Once a mission was broken off because the budget is spent, no other is begun.
     """
     with _one_thread_each():
-        while suspects := (yield from _run_pool(plan, tasks, workers)):
+        while suspects := (yield from _run_pool(plan, tasks, access, workers)):
             # Which of them it was cannot be known: each is tried alone, so that none fails for another.
             for task in suspects.under_way:
-                yield from _run_alone(plan, task)
+                yield from _run_alone(plan, task, access)
             tasks = suspects.left
 
 
-def _run_alone(plan: BenchPlan, task: Task) -> Generator[Done, None, None]:
+def _run_alone(plan: BenchPlan, task: Task, access: ModelAccess) -> Generator[Done, None, None]:
     for _ in range(1, MAX_TRIES):
-        if (yield from _run_pool(plan, [task], 1)) is None:
+        if (yield from _run_pool(plan, [task], access, 1)) is None:
             return
     yield lost(plan, task, f"its process died {MAX_TRIES} times")
 
@@ -72,13 +79,15 @@ class _Broken:
     left: list[Task]
 
 
-def _run_pool(plan: BenchPlan, tasks: Sequence[Task], workers: int) -> Generator[Done, None, _Broken | None]:
-    """Run missions until they are done (returns None) or a process dies."""
+def _run_pool(
+    plan: BenchPlan, tasks: Sequence[Task], access: ModelAccess, workers: int
+) -> Generator[Done, None, _Broken | None]:
+    """Run missions until they are done, or the budget is spent (returns None), or a process dies."""
     queues = Queues(plan, tasks, workers)
     under_way: dict[Future[Done], tuple[int, Task]] = {}
     with ExitStack() as stack:
         # A pool of one for each worker: a mission can then be given to the one that has its world open.
-        pools = [stack.enter_context(_pool(1, _begin, plan)) for _ in range(workers)]
+        pools = [stack.enter_context(_pool(1, _begin, plan, access)) for _ in range(workers)]
         busy = [0] * workers
         while True:
             died = False
@@ -102,9 +111,12 @@ def _run_pool(plan: BenchPlan, tasks: Sequence[Task], workers: int) -> Generator
                 worker, task = under_way.pop(future)
                 busy[worker] -= 1
                 try:
-                    yield future.result()
+                    ended = future.result()
                 except BrokenProcessPool:
                     broken.append(task)
+                    continue
+                queues.heed(ended)
+                yield ended
             if broken or died:
                 return _Broken([*broken, *(task for _, task in under_way.values())], queues.left())
 
@@ -146,6 +158,13 @@ class Queues:
     def put_back(self, worker: int, task: Task) -> None:
         """Give a mission back that could not be begun."""
         self._own[worker].appendleft(task)
+
+    def heed(self, done: Done) -> None:
+        """Hand out nothing more once a mission was broken off because the budget is spent."""
+        if done.denied is not None:
+            self._places.clear()
+            for queue in self._own:
+                queue.clear()
 
     def left(self) -> list[Task]:
         """Return all missions that nobody has taken, those of a place together."""
@@ -191,9 +210,9 @@ def _deaf() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _begin(plan: BenchPlan) -> None:
-    global _plan  # noqa: PLW0603 - what a worker process is for
-    _plan = plan
+def _begin(plan: BenchPlan, access: ModelAccess) -> None:
+    global _plan, _access
+    _plan, _access = plan, access
     gc.set_threshold(*RARELY)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
@@ -208,7 +227,7 @@ def _end_with_parent() -> None:
 def _run(task: Task) -> Done:
     if _plan is None:
         raise AssertionError
-    return run_task(_plan, task)
+    return run_task(_plan, task, _access)
 
 
 @contextmanager

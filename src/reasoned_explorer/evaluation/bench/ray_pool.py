@@ -10,6 +10,7 @@ from typing import Any
 from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
 from reasoned_explorer.evaluation.bench.pools import MAX_TRIES, lost
 from reasoned_explorer.evaluation.bench.worker import Done, run_task
+from reasoned_explorer.evaluation.model_access import PLAIN_ACCESS, ModelAccess
 from reasoned_explorer.model import Fault, MissingDependencyError, SettingsError
 from reasoned_explorer.model.stopping import stop_if_asked
 
@@ -22,7 +23,14 @@ _ANSWER_S = 5.0
 _ADDRESS = re.compile(r"(?:ray://)?(?P<host>[\w.-]+|\[[0-9A-Fa-f:.]+\]):(?P<port>\d{1,5})", re.ASCII)
 
 
-def run_on_ray(plan: BenchPlan, tasks: Sequence[Task], *, address: str, workers: int | None = None) -> Iterator[Done]:
+def run_on_ray(
+    plan: BenchPlan,
+    tasks: Sequence[Task],
+    access: ModelAccess = PLAIN_ACCESS,
+    *,
+    address: str,
+    workers: int | None = None,
+) -> Iterator[Done]:
     """Run missions on a Ray cluster; they come in the order in which they end.
 
     A mission whose worker or node is lost is tried again elsewhere.
@@ -30,6 +38,7 @@ def run_on_ray(plan: BenchPlan, tasks: Sequence[Task], *, address: str, workers:
     Args:
         plan: Of the run.
         tasks: Its missions.
+        access: How models are reached; without budget and tapes, which are files of one machine.
         address: ``auto`` joins the cluster that this machine belongs to, or starts one here where there is none;
             otherwise the address of a cluster.
         workers: Processors that a cluster started here has; None takes those of this machine.
@@ -48,7 +57,7 @@ def run_on_ray(plan: BenchPlan, tasks: Sequence[Task], *, address: str, workers:
         most = _AHEAD * max(1, int(ray.cluster_resources().get("CPU", 1)))
         while True:
             for task in left:
-                under_way[remote.remote(shared, task)] = task
+                under_way[remote.remote(shared, task, access)] = task
                 if len(under_way) >= most:
                     break
             if not under_way:

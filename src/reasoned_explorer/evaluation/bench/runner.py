@@ -9,6 +9,7 @@ from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
 from reasoned_explorer.evaluation.bench.pools import map_in_processes, run_here, run_in_processes
 from reasoned_explorer.evaluation.bench.store import RunStore
 from reasoned_explorer.evaluation.bench.worker import Done
+from reasoned_explorer.evaluation.model_access import PLAIN_ACCESS, ModelAccess
 from reasoned_explorer.task.split import Place, Split
 from reasoned_explorer.task.splitting import Dealing, Share, make_split
 
@@ -23,6 +24,7 @@ class BenchProgress:
         here: Finished in this sitting.
         failed: Of these, so many with a part that failed.
         usd: Spent in this sitting, US dollars.
+        denied: Why it ends early, or None: the budget is spent.
         started_s: When this sitting began, seconds of a monotonic clock.
     """
 
@@ -31,6 +33,7 @@ class BenchProgress:
     here: int = 0
     failed: int = 0
     usd: float = 0.0
+    denied: str | None = None
     started_s: float = 0.0
 
     @property
@@ -57,15 +60,15 @@ class Workers:
     count: int = 1
     ray: str | None = None
 
-    def run(self, plan: BenchPlan, tasks: list[Task]) -> Iterator[Done]:
+    def run(self, plan: BenchPlan, tasks: list[Task], access: ModelAccess) -> Iterator[Done]:
         """Run missions; they come in the order in which they end."""
         if self.ray is not None:
             from reasoned_explorer.evaluation.bench.ray_pool import run_on_ray
 
-            return run_on_ray(plan, tasks, address=self.ray, workers=self.count)
+            return run_on_ray(plan, tasks, access, address=self.ray, workers=self.count)
         if self.count == 1:
-            return run_here(plan, tasks)
-        return run_in_processes(plan, tasks, workers=self.count)
+            return run_here(plan, tasks, access)
+        return run_in_processes(plan, tasks, access, workers=self.count)
 
 
 def split_of(name: str, places: tuple[Place, ...], *, share: Share, dealing: Dealing, workers: int) -> Split:
@@ -80,13 +83,23 @@ def split_of(name: str, places: tuple[Place, ...], *, share: Share, dealing: Dea
     return make_split(name, places, share=share, dealing=dealing, map_places=map_places)
 
 
-def run_bench(store: RunStore, workers: Workers, on_done: Callable[[BenchProgress], None] | None = None) -> None:
+def run_bench(
+    store: RunStore,
+    workers: Workers,
+    on_done: Callable[[BenchProgress], None] | None = None,
+    *,
+    access: ModelAccess = PLAIN_ACCESS,
+) -> str | None:
     """Run what is not finished yet; each mission is in the store as soon as it is over.
 
     Args:
         store: Of the run.
         workers: Who runs the missions.
         on_done: Called once before the first mission and after each.
+        access: How models are reached and what they may cost.
+
+    Returns:
+        Why not all missions were run, or None where they were: the budget is spent, and the run can be gone on with.
 
     Raises:
         WorldError: If the world of a mission is gone or is another one now; what is finished stays.
@@ -100,12 +113,17 @@ def run_bench(store: RunStore, workers: Workers, on_done: Callable[[BenchProgres
     if on_done is not None:
         on_done(progress)
     if not tasks:
-        return
-    for done in workers.run(plan, tasks):
+        return None
+    for done in workers.run(plan, tasks, access):
+        if done.row is None:
+            progress.denied = progress.denied or done.denied
+            continue
         store.add(done.task, done.row, trace=done.trace, wall_s=done.wall_s)
+        access.forget(done.task.key)
         progress.finished += 1
         progress.here += 1
         progress.failed += done.failed
         progress.usd += done.usd
         if on_done is not None:
             on_done(progress)
+    return progress.denied

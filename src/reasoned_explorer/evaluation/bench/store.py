@@ -14,15 +14,15 @@ read where nothing can be written.
 import json
 import sqlite3
 import zlib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, suppress
-from dataclasses import fields, replace
+from dataclasses import fields
 from hashlib import blake2b
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
+from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task, longer
 from reasoned_explorer.evaluation.record_file import parse_record
 from reasoned_explorer.evaluation.row import MissionRow
 from reasoned_explorer.evaluation.scoring import MissionScore
@@ -186,6 +186,27 @@ class RunStore:
         about: dict[str, Any] = self._fact("about")
         return about
 
+    @property
+    def models(self) -> dict[str, Any]:
+        """What is known of the models that the run calls; empty where nothing was kept."""
+        try:
+            models: dict[str, Any] = self._fact("models")
+        except KeyError:
+            return {}
+        return models
+
+    def keep_models(self, models: Mapping[str, Any]) -> None:
+        """Keep what is known of the models that the run calls.
+
+        Raises:
+            RecordWriteError: If the store cannot be written.
+        """
+        text = json.dumps(models, sort_keys=True, ensure_ascii=False)
+        try:
+            self._connection.execute("INSERT OR REPLACE INTO run VALUES ('models', ?)", (text,))
+        except sqlite3.Error as error:
+            raise RecordWriteError(f"run: {self.folder} cannot be written: {error}") from error
+
     def extend(self, methods: Sequence[str]) -> None:
         """Have the run run more methods on its missions, after those that it has; what it has already is left alone.
 
@@ -193,9 +214,7 @@ class RunStore:
             InputError: If a method cannot be run.
             RecordWriteError: If the store cannot be written.
         """
-        plan = self.plan
-        longer = replace(plan, methods=(*plan.methods, *(name for name in methods if name not in plan.methods)))
-        text = json.dumps(longer.as_dict(), sort_keys=True, ensure_ascii=False)
+        text = json.dumps(longer(self.plan, methods).as_dict(), sort_keys=True, ensure_ascii=False)
         try:
             self._connection.execute("UPDATE run SET value = ? WHERE name = 'plan'", (text,))
         except sqlite3.Error as error:

@@ -69,7 +69,8 @@ def main_sheet(results: Results, *, title: str, notes: Sequence[str] = ()) -> Sh
             cells = [figure(table[shown]) for shown in SHOWN]
             times = [figure(table[shown], whole) for shown in ("CT", "TT")]
             costs = [whole(fmean(getattr(row, what) for row in rows)) for what in ("calls", "tokens_in", "tokens_out")]
-            usd = f"{math.fsum(row.usd for row in rows):.2f}"
+            least = "≥ " if any(row.unpriced for row in rows) else ""
+            usd = f"{least}{math.fsum(row.usd for row in rows):.2f}"
             lines.append(
                 (level_name(level), label_of(results.rows[name]), f"{table.count}", *cells, *times, *costs, usd)
             )

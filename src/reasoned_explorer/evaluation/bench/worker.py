@@ -10,6 +10,8 @@ from typing import Any
 
 from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
 from reasoned_explorer.evaluation.mission import Mission, MissionResult, judge_of
+from reasoned_explorer.evaluation.mission_settings import models_of
+from reasoned_explorer.evaluation.model_access import PLAIN_ACCESS, ModelAccess
 from reasoned_explorer.evaluation.model_desk import ModelDesk
 from reasoned_explorer.evaluation.record_file import record_bytes
 from reasoned_explorer.evaluation.row import MissionRow
@@ -37,19 +39,21 @@ class Done:
 
     Attributes:
         task: Which.
-        row: Its row, as `MissionRow.as_json` gives it.
+        row: Its row, as `MissionRow.as_json` gives it; None for a mission that the run's budget broke off.
         trace: Its record, compressed, or None.
         wall_s: Seconds that it took on the machine that ran it.
         failed: A part failed.
-        usd: What it cost, US dollars.
+        usd: What it cost, US dollars, as far as that is known.
+        denied: Why no more calls may begin, or None: the run's budget is spent.
     """
 
     task: Task
-    row: str
+    row: str | None
     trace: bytes | None
     wall_s: float
     failed: bool
     usd: float
+    denied: str | None = None
 
 
 @lru_cache(maxsize=2)
@@ -86,13 +90,18 @@ def _judge_of(
 
 
 @lru_cache(maxsize=1)
-def _desk() -> ModelDesk:
+def _desk_of(access: ModelAccess) -> ModelDesk:
     """Make models once a process: what they can do is found out once, and their connections stay."""
-    return ModelDesk()
+    return access.desk()
 
 
-def run_task(plan: BenchPlan, task: Task) -> Done:
+def run_task(plan: BenchPlan, task: Task, access: ModelAccess = PLAIN_ACCESS) -> Done:
     """Run a mission. What goes wrong in it is its outcome, never an exception.
+
+    Args:
+        plan: Of the run.
+        task: Which mission.
+        access: How models are reached.
 
     Raises:
         WorldError: If its world is gone or is another one now: no mission of the run can be trusted then.
@@ -106,11 +115,17 @@ def run_task(plan: BenchPlan, task: Task) -> Done:
     try:
         settings = plan.settings_of(task)
         judge = _judge_of(world, item.episode.id, goal, settings.vehicle, settings.success_radius_m)
-        mission = Mission(goal, atlas, settings, start=item.episode.start, judge=judge, desk=_desk())
-        result = mission.run()
+        desk = _desk_of(access)
+        tape = access.tape_of(task.key) if models_of(settings) else None
+        with desk.under_way(tape, {} if tape is None else {"mission": plan.digest_of(task)}):
+            mission = Mission(goal, atlas, settings, start=item.episode.start, judge=judge, desk=desk)
+            result = mission.run()
     except ReasonedExplorerError as error:
         row = failed_row(plan, task, str(error))
     else:
+        # A call may have been denied and the mission have ended otherwise: without the budget it would be another.
+        if (denied := desk.denied) is not None and models_of(settings):
+            return Done(task, None, None, time.perf_counter() - started_s, failed=False, usd=0.0, denied=denied)
         row = _row_of(plan, task, item, result)
         if plan.keep_traces:
             trace = zlib.compress(record_bytes(result.record), 4)
@@ -198,6 +213,7 @@ def _row_of(plan: BenchPlan, task: Task, item: SplitEpisode, result: MissionResu
         tokens_in=sum(call.tokens_in for call in calls),
         tokens_out=sum(call.tokens_out for call in calls),
         usd=round(math.fsum(call.usd or 0.0 for call in calls), 9),
+        unpriced=sum(call.usd is None for call in calls),
         evaluator_sum=round(math.fsum(scores), 4),
         evaluator_count=len(scores),
         small_collisions=small,
