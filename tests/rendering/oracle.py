@@ -76,7 +76,7 @@ def cast_seconds(scene: Scene, levels: np.ndarray, view: Projection) -> float:
 def soup_of(scene: Scene, levels: np.ndarray, view: Projection) -> tuple[np.ndarray, np.ndarray]:
     """Triangles about the eye that face it, shape (n, 3, 3), and their ids."""
     triangles, owners = [ground(view)], [np.full(2, GROUND_ID)]
-    for i in np.flatnonzero(levels >= 0):
+    for i in np.flatnonzero(levels >= 0).tolist():
         own = corners_of(scene, i, levels[i]) - view.eye
         # Only what faces the eye: backs are not drawn.
         facing = (np.cross(own[:, 1] - own[:, 0], own[:, 2] - own[:, 0]) * own[:, 0]).sum(axis=1) < 0.0
