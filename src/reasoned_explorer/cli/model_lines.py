@@ -129,6 +129,8 @@ def _samples_of(plan: BenchPlan) -> list[Sample]:
 
 
 def _minutes(minutes: float) -> str:
+    if minutes < 1.0:
+        return f"{60.0 * minutes:.0f} s"
     return f"{minutes / 60.0:.1f} h" if minutes >= 90.0 else f"{minutes:.1f} min"
 
 
