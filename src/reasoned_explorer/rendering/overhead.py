@@ -1,10 +1,9 @@
 """Pictures from straight above, as a map shows a place."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Camera, Fault, SettingsError
@@ -22,21 +21,6 @@ _FLOOR_M = 200.0
 _NO_HAZE_M = 1e9
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Overhead:
-    """A place from above.
-
-    Attributes:
-        picture: Colour and ids.
-        heights_m: Of what is seen above the ground, shape (height, width), float32.
-        metres_per_px: Edge of a pixel on the ground.
-    """
-
-    picture: Picture
-    heights_m: NDArray[np.float32]
-    metres_per_px: float
-
-
 def overhead(
     scene: Scene,
     x_m: float,
@@ -48,7 +32,7 @@ def overhead(
     heading_rad: float = 0.0,
     conditions: Conditions | None = None,
     antialias: int = 2,
-) -> Overhead:
+) -> Picture:
     """Return a place seen from straight above, almost without perspective.
 
     It is one picture through a very long lens from very high up, so that there is nothing to be stitched: walls lean
@@ -65,6 +49,9 @@ def overhead(
         conditions: The light. There is no haze, and no shadow is cast: the renderer draws those near the eye only.
         antialias: See `Renderer.picture`.
 
+    Returns:
+        The picture; its depth is how high above the ground what is seen stands, metres.
+
     Raises:
         SettingsError: If anything is out of range.
     """
@@ -76,4 +63,4 @@ def overhead(
     camera = Camera(width_px, height_px, 2.0 * math.atan(0.5 * span_m / altitude_m))
     above = Pose(x_m, y_m, altitude_m, heading_rad)
     picture = renderer.picture(above, camera, pitch_rad=-0.5 * math.pi, antialias=antialias)
-    return Overhead(picture, np.float32(altitude_m) - picture.depth_m, span_m / width_px)
+    return replace(picture, depth_m=np.float32(altitude_m) - picture.depth_m)
