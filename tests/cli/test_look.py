@@ -123,6 +123,10 @@ def test_the_contact_sheet_needs_no_world(monkeypatch: pytest.MonkeyPatch) -> No
 
 def test_a_real_place_takes_latitude_and_longitude_and_thanks_its_mappers(osm_folder: Path) -> None:
     town = ["--world", str(osm_folder / "munich-centre.osm.pbf"), "--bbox", "11.5745,48.1365,11.5765,48.1375"]
+    code, shown = _rex(*town, "--at", "48.2,11.5755")
+    assert code == 2
+    assert "expected latitude 48.1" in shown
+    assert "--start" not in shown
     code, shown = _rex(*town, "--at", "48.1370,11.5755,1.6,90", "--size", "64x48")
     assert code == 0, shown
     assert "OpenStreetMap contributors" in shown

@@ -108,7 +108,11 @@ def parse_view(text: str, world: World, *, height_m: float) -> Pose:
     """
     check_view_form(text)
     rest, given_m, _ = _without_height(text)
-    pose = parse_start(rest, world)
+    try:
+        pose = parse_start(rest, world)
+    except StartError as error:
+        # What a start may do instead, a viewpoint may not: there is no random one.
+        raise StartError("viewpoint", [replace(fault, remedy="") for fault in error.faults]) from error
     if pose is None:
         raise AssertionError  # there is a text
     if not world.bounds.contains(pose.x_m, pose.y_m):
