@@ -2,10 +2,13 @@
 
 import json
 import shlex
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from PIL import Image
 from typer.testing import CliRunner
 
@@ -14,7 +17,7 @@ from reasoned_explorer.cli.app import app
 from reasoned_explorer.cli.look_files import write_together
 from reasoned_explorer.cli.parsing import check_view_form, parse_size, parse_view
 from reasoned_explorer.geometry import GeoOrigin
-from reasoned_explorer.model import PartError, SettingsError, StartError
+from reasoned_explorer.model import PartError, ReasonedExplorerError, SettingsError, StartError
 from reasoned_explorer.rendering.scene import PICTURE_CLASSES
 from tests.cli.test_parsing import HERE, MUNICH
 
@@ -237,6 +240,13 @@ def test_a_viewpoint_on_earth_is_latitude_and_longitude() -> None:
     view = parse_view("48.1380,11.5756,1.6,-90", MUNICH, height_m=1.5)
     assert view.x_m == pytest.approx(7.4, abs=0.1)
     assert view.z_m == 1.6
+
+
+@given(st.text(alphabet="0123456789.,-+einaf x×", max_size=24))
+def test_whatever_is_typed_is_understood_or_refused(text: str) -> None:
+    for parse in (lambda: parse_view(text, HERE, height_m=1.5), lambda: parse_size(text)):
+        with suppress(ReasonedExplorerError):
+            parse()
 
 
 def test_all_faults_of_a_viewpoint_are_told_at_once() -> None:
