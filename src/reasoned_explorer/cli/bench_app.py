@@ -192,7 +192,7 @@ def compare(
     second: Annotated[str, typer.Argument(metavar="B", help="Another run, or RUN::PLANNER (the run may be the same).")],
 ) -> None:
     """Compare two runs: paired differences with intervals on the missions that both have."""
-    from reasoned_explorer.cli.bench import compare_runs
+    from reasoned_explorer.cli.compare import compare_runs
 
     compare_runs(first, second)
 
@@ -203,7 +203,7 @@ def export_(
     path: Annotated[Path, typer.Argument(metavar="FILE", help="results.csv or results.parquet")],
 ) -> None:
     """Write every mission of a run into a CSV or Parquet file."""
-    from reasoned_explorer.cli.bench import export_run
+    from reasoned_explorer.cli.compare import export_run
 
     export_run(run, path)
 
