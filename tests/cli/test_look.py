@@ -1,6 +1,7 @@
 """`rex look`, as a person types it."""
 
 import json
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -139,6 +140,23 @@ def test_it_says_that_it_compiles_where_nothing_is_compiled_yet(monkeypatch: pyt
     _, shown = _rex(*SMALL)
     assert "the first time only" in shown
     assert shown.index("the world …") < shown.index("what things look like …") < shown.index("light and shadow …")
+
+
+def _documented() -> list[str]:
+    text = (Path(__file__).resolve().parents[2] / "docs" / "look.md").read_text(encoding="utf-8")
+    commands = [line.split("#")[0].strip() for line in text.splitlines() if line.startswith("rex look ")]
+    return [command for command in commands if "map.osm" not in command and "--contact-sheet" not in command]
+
+
+def test_there_are_commands_in_the_documentation() -> None:
+    assert len(_documented()) == 5
+
+
+@pytest.mark.parametrize("command", _documented())
+def test_what_the_documentation_tells_people_to_type_works(command: str) -> None:
+    code, shown = _rex(*shlex.split(command.replace("downtown:7", WORLD[1]))[2:])
+    assert code == 0, shown
+    assert Path("look.png").stat().st_size > 10_000
 
 
 BAD = {

@@ -433,3 +433,13 @@ def test_the_example_runs() -> None:
     )
     assert "steps," in shown.stdout
     assert "SPL" in shown.stdout
+
+
+def test_without_gymnasium_it_says_what_to_install() -> None:
+    code = (
+        "import sys; sys.modules['gymnasium'] = None\n"
+        "from reasoned_explorer.model import MissingDependencyError\n"
+        "try:\n    import reasoned_explorer.gym\nexcept MissingDependencyError as error:\n    print(error)"
+    )
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "pip install 'reasoned-explorer[gym]'" in shown.stdout

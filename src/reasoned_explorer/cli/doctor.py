@@ -45,6 +45,13 @@ PARTS = (
     Part("rich", "rich", "progress"),
     Part("pyarrow", "pyarrow", "results as Parquet", "pip install 'reasoned-explorer[parquet]'", core=False),
     Part("ray", "ray", "a benchmark on a cluster", "pip install 'reasoned-explorer[ray]'", core=False),
+    Part(
+        "gymnasium",
+        "gymnasium",
+        "the task as a Gymnasium environment",
+        "pip install 'reasoned-explorer[gym]'",
+        core=False,
+    ),
     Part("torch", "torch", "models on this machine, hf:NAME", "pip install 'reasoned-explorer[local]'", core=False),
     Part(
         "transformers",
