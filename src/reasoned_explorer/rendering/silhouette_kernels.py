@@ -39,6 +39,16 @@ def place_on_sheet(library: Library, instances: Instances, i: int, view: Project
 
 
 @kernel
+def farthest_on_sheet(library: Library, instances: Instances, i: int, sheet: Sheet) -> float:
+    """Return the greatest depth that the box of an instance has where `place_on_sheet` has put it."""
+    boxes, matrix, prototype = library.boxes, sheet.matrix, instances.prototypes[i]
+    farthest = matrix[2, 3]
+    for axis in range(3):
+        farthest += max(matrix[2, axis] * boxes[prototype, 0, axis], matrix[2, axis] * boxes[prototype, 1, axis])
+    return farthest
+
+
+@kernel
 def draw_on_sheet(
     library: Library, instances: Instances, i: int, view: Projection, density: float, sheet: Sheet
 ) -> None:

@@ -16,20 +16,19 @@ from reasoned_explorer.rendering.compiling import kernel, part
 from reasoned_explorer.rendering.library import Library
 from reasoned_explorer.rendering.projection import Projection
 from reasoned_explorer.rendering.scene import Instances
-from reasoned_explorer.rendering.silhouette_kernels import Sheet, draw_on_sheet, place_on_sheet
+from reasoned_explorer.rendering.silhouette_kernels import Sheet, draw_on_sheet, farthest_on_sheet, place_on_sheet
 from reasoned_explorer.simulation.eyes_kernels import GROUND_AHEAD_M, GROUND_BEARINGS, WALL_RAYS
 from reasoned_explorer.world.sight_kernels import AREA, BUILDING, FIRST, LAST, OBJECT, SHAPE, FloatArray, Targets
 
 _GROUND_ID = 1
 _FIRST_BUILDING_ID = 2
 #: From so many coarse pixels on they are counted as they are.
-_MANY = 48
-#: From so many on, where nothing hides any of it, the coarse pixels tell where it is well enough.
-_SOME = 6
+_MANY = 6
 #: A sample is hidden by what is nearer by more than this: a share of its depth, and metres.
 _NEARER_SHARE, _NEARER_M = 0.01, 0.05
-#: A place stands on the wall of its building, which at a slant seems nearer, metres.
-_WALL_M = 1.0
+#: A place stands on the wall of its building, which at a slant seems nearer; of two places on one spot, one is drawn
+#: over the other, metres.
+_WALL_M, _SPOT_M = 1.0, 0.1
 #: Rows below the horizon in which ground is looked at row by row; farther down every second one is.
 _FINE_ROWS = 24
 #: Fewer fine pixels of a building than this tell nothing of it.
@@ -101,11 +100,19 @@ def _count(depth: NDArray[np.float32], ids: NDArray[np.int32], coarse: Projectio
 
 
 @part
-def _shows(found: int, depth_m: float, own: int, own_depth_m: float, wall: int) -> bool:
+def _shows(
+    walls: NDArray[np.int32], first_object: int, found: int, depth_m: float, own: int, own_depth_m: float
+) -> bool:
     """Whether a coarse pixel that shows ``found`` would show a sample of ``own``. Flat ground hides nothing."""
     if found <= _GROUND_ID or found == own:
         return True
-    slack_m = _WALL_M if found == wall else _NEARER_M + _NEARER_SHARE * own_depth_m
+    slack_m = _NEARER_M + _NEARER_SHARE * own_depth_m
+    wall = walls[own - first_object]
+    if wall >= 0:
+        if found == wall:
+            slack_m = _WALL_M
+        elif found >= first_object and walls[found - first_object] >= 0:
+            slack_m = -_SPOT_M
     return depth_m >= own_depth_m - slack_m
 
 
@@ -117,12 +124,13 @@ def _may_show(
     rectangle: NDArray[np.int32],
     own: int,
     own_depth_m: float,
-    wall: int,
+    walls: NDArray[np.int32],
+    first_object: int,
 ) -> bool:
     """Whether anything in a rectangle of fine pixels is not nearer than the thing."""
     for y in range(int(rectangle[0, 2] * ratio), int((rectangle[0, 3] + 0.5) * ratio) + 1):
         for x in range(int(rectangle[0, 0] * ratio), int((rectangle[0, 1] + 0.5) * ratio) + 1):
-            if _shows(ids[y, x], depth[y, x], own, own_depth_m, wall):
+            if _shows(walls, first_object, ids[y, x], depth[y, x], own, own_depth_m):
                 return True
     return False
 
@@ -157,17 +165,12 @@ def _see_large(
     own: int,
     tally: Tally,
     seen: FloatArray,
-) -> bool:
-    """Set pixels, silhouette, distance and tangent of the bearing of a thing by its coarse pixels.
-
-    Returns whether it could be told by these: they are many, or nothing hides any of it.
-    """
+) -> None:
+    """Set pixels, silhouette, distance and tangent of the bearing of a thing by its coarse pixels."""
     total, count = 0, tally.counts[own]
     near = place_on_sheet(library, instances, i, coarse, sheet)
-    farthest_m = 1.0 / near + 2.0 * instances.balls[i, 3]
+    farthest_m = farthest_on_sheet(library, instances, i, sheet)
     if near > 0.0 and not _is_free(depth, ids, sheet.rectangle, own, farthest_m):
-        if count < _MANY:
-            return False
         draw_on_sheet(library, instances, i, coarse, density, sheet)
         rectangle, owners = sheet.rectangle, sheet.canvas.owners
         for y in range(rectangle[0, 2], rectangle[0, 3] + 1):
@@ -176,7 +179,6 @@ def _see_large(
     scale = (fine.width / coarse.width) ** 2
     seen[0], seen[1] = count * scale, max(total, count) * scale
     seen[2], seen[3] = tally.nearest[own], tally.asides[own] / count
-    return True
 
 
 @part
@@ -191,14 +193,15 @@ def _see_small(
     density: float,
     sheet: Sheet,
     own: int,
-    wall: int,
+    walls: NDArray[np.int32],
+    first_object: int,
     seen: FloatArray,
 ) -> None:
     """Set the same by samples at the camera's resolution; no pixels where it is out of the picture or all hidden."""
     seen[0] = 0.0
     near = place_on_sheet(library, instances, i, fine, sheet)
     rectangle = sheet.rectangle
-    if near <= 0.0 or not _may_show(depth, ids, ratio, rectangle, own, 1.0 / near, wall):
+    if near <= 0.0 or not _may_show(depth, ids, ratio, rectangle, own, 1.0 / near, walls, first_object):
         return
     draw_on_sheet(library, instances, i, fine, density, sheet)
     owners, nearness = sheet.canvas.owners, sheet.canvas.nearness
@@ -210,7 +213,7 @@ def _see_small(
                 continue
             total += 1
             column, own_depth_m = int((x + 0.5) * ratio), 1.0 / nearness[y, x]
-            if _shows(ids[row, column], depth[row, column], own, own_depth_m, wall):
+            if _shows(walls, first_object, ids[row, column], depth[row, column], own, own_depth_m):
                 aside = (x + 0.5 - fine.centre_x) / fine.focal
                 count += 1
                 distance = min(distance, own_depth_m * math.sqrt(1.0 + aside * aside))
@@ -326,11 +329,12 @@ def _see_objects(
             row[2] = max(row[2], near) if near > 0.0 else 0.0
         elif i < 0:
             continue
-        elif tally.counts[own] < _SOME or not _see_large(
-            library, instances, i, depth, ids, coarse, fine, density, sheet, own, tally, row
-        ):
-            wall = stage.walls[k]
-            _see_small(library, instances, i, depth, ids, fine, ratio, density, sheet, own, wall, row)
+        elif tally.counts[own] >= _MANY:
+            _see_large(library, instances, i, depth, ids, coarse, fine, density, sheet, own, tally, row)
+        else:
+            _see_small(
+                library, instances, i, depth, ids, fine, ratio, density, sheet, own, stage.walls, first_object, row
+            )
         if row[0] < min_px or row[0] == 0.0 or row[2] > range_m:
             continue
         distance = row[2]
