@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from reasoned_explorer.rendering.compiling import kernel
 from reasoned_explorer.rendering.library import Library
 from reasoned_explorer.rendering.projection import Projection
-from reasoned_explorer.rendering.raster_kernels import _bound, _distance, _draw_level, _level_of, _matrix_of
-from reasoned_explorer.rendering.raster_kernels import Canvas
+from reasoned_explorer.rendering.raster_kernels import Canvas, _bound, _distance, _draw_level, _level_of, _matrix_of
 from reasoned_explorer.rendering.scene import Instances
 
 
@@ -33,9 +32,7 @@ class Sheet(NamedTuple):
 def place_on_sheet(library: Library, instances: Instances, i: int, view: Projection, sheet: Sheet) -> float:
     """Set the rectangle that an instance may cover in a view; return its greatest nearness, 0 where it is not in it."""
     _matrix_of(instances, i, view, sheet.matrix)
-    return _bound(
-        library.boxes, instances.prototypes[i], sheet.matrix, view.width, view.height, sheet.rectangle, 0
-    )
+    return _bound(library.boxes, instances.prototypes[i], sheet.matrix, view.width, view.height, sheet.rectangle, 0)
 
 
 @kernel

@@ -130,9 +130,7 @@ class PixelEyes:
         view = projection_of(pose, _AHEAD_CAMERA)
         return min(limit_m, float(range_ahead(view, drawn.depth_m, drawn.instances, *corridor)))
 
-    def _see(
-        self, pose: Pose, camera: Camera
-    ) -> tuple[list[list[float]], list[list[float]], float, list[list[float]]]:
+    def _see(self, pose: Pose, camera: Camera) -> tuple[list[list[float]], list[list[float]], float, list[list[float]]]:
         """As the kernel returns it: objects, ground, share of buildings, buildings."""
         from reasoned_explorer.rendering.projection import projection_of
         from reasoned_explorer.rendering.renderer import DENSITY
@@ -206,7 +204,10 @@ class PixelEyes:
             Tally(
                 np.zeros(ids, np.int64),
                 *(np.empty(shape) for shape in (ids, ids, (corners, 2), corners, 4)),
-                *(np.empty(shape) for shape in ((len(self._world.objects), 7), (3, 6), (len(self._world.buildings), 2))),
+                *(
+                    np.empty(shape)
+                    for shape in ((len(self._world.objects), 7), (3, 6), (len(self._world.buildings), 2))
+                ),
             ),
             Sheet(canvas, np.empty((vertices, 5)), np.empty((3, 4)), np.empty((1, 4), np.int32)),
         )

@@ -245,7 +245,6 @@ def _crossings_of(corners: FloatArray, count: int, ahead: float, scale: float, c
 def _see_area(
     target: FloatArray,
     outline: FloatArray,
-    depth: NDArray[np.float32],
     ids: NDArray[np.int32],
     coarse: Projection,
     fine: Projection,
@@ -267,7 +266,7 @@ def _see_area(
         corners[k - first, 1] = dx * axes[0, 0] + dy * axes[0, 1]
     ratio = coarse.width / fine.width
     total, count, distance, asides = 0.0, 0.0, math.inf, 0.0
-    row = int(math.floor(fine.centre_y))
+    row = math.floor(fine.centre_y)
     horizon = row
     while row < fine.height:
         step = 1 if row < horizon + _FINE_ROWS else 2
@@ -323,9 +322,7 @@ def _see_objects(
         k, near = int(shown[place, 0]), shown[place, 4]
         i, own = stage.stands[k], first_object + k
         if stage.targets.table[k, SHAPE] == AREA:
-            _see_area(
-                stage.targets.table[k], stage.targets.corners, depth, ids, coarse, fine, range_m, own, tally, row
-            )
+            _see_area(stage.targets.table[k], stage.targets.corners, ids, coarse, fine, range_m, own, tally, row)
             row[2] = max(row[2], near) if near > 0.0 else 0.0
         elif i < 0:
             continue
@@ -339,9 +336,7 @@ def _see_objects(
             continue
         distance = row[2]
         rank = count
-        while rank > 0 and (
-            distance < seen[rank - 1, 2] or (distance == seen[rank - 1, 2] and k < seen[rank - 1, 0])
-        ):
+        while rank > 0 and (distance < seen[rank - 1, 2] or (distance == seen[rank - 1, 2] and k < seen[rank - 1, 0])):
             for column in range(7):
                 seen[rank, column] = seen[rank - 1, column]
             rank -= 1
@@ -363,7 +358,7 @@ def _see_walls(
     least: float,
     tally: Tally,
 ) -> tuple[float, int]:
-    """Set the buildings that are seen; returns the share of directions in which there is one, and how many there are."""
+    """Set the buildings that are seen; returns the share of directions that show one, and how many they are."""
     met = 0
     for k in range(WALL_RAYS):
         aside = math.tan(half_fov * (2.0 * (k + 0.5) / WALL_RAYS - 1.0))
@@ -410,7 +405,7 @@ def _see_ground(
     the visible ground nearest to it.
     """
     eye = coarse.eye
-    horizon = int(math.floor(coarse.centre_y))
+    horizon = math.floor(coarse.centre_y)
     for k in range(3):
         aside = math.tan(GROUND_BEARINGS[k])
         slant = math.sqrt(1.0 + aside * aside)
