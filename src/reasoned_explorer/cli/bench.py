@@ -81,6 +81,7 @@ class BenchOptions:
     captioner: str = "noisy"
     picture_px: int = 448
     conditions: str = "clear"
+    eyes: str = "lines"
     vehicle: str = "drone"
     latency: str = "gpt-2023"
     clock: str | None = None
@@ -276,6 +277,7 @@ def _plan(options: BenchOptions, names: Sequence[str], wrong: Sequence[InputErro
         captioner=options.captioner,
         picture_px=options.picture_px,
         conditions=options.conditions,
+        eyes=options.eyes,
         latency=options.latency,
         explorer=explorer,
         success_radius_m=options.radius_m,

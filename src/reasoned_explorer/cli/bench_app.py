@@ -105,6 +105,9 @@ def bench(
     captioner: Annotated[str, typer.Option(help="Who says what is seen; see rex names.")] = "noisy",
     picture_px: Annotated[int, typer.Option(help="Side of the pictures that a model is shown, pixels.")] = 448,
     conditions: Annotated[str, typer.Option(help="In pictures: clear, overcast, dusk, fog or rain.")] = "clear",
+    eyes: Annotated[
+        str, typer.Option(help="What simulated captioners go by: lines or pixels; see rex names.")
+    ] = "lines",
     yes: Yes = False,
     vehicle: Annotated[str, typer.Option(help="Vehicle profiles with commas; each has a table of its own.")] = "drone",
     latency: Annotated[str, typer.Option(help="How long modelled calls take; see rex names.")] = "gpt-2023",
@@ -161,6 +164,7 @@ def bench(
             captioner=captioner,
             picture_px=picture_px,
             conditions=conditions,
+            eyes=eyes,
             vehicle=vehicle,
             latency=latency,
             clock=clock,
