@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from reasoned_explorer.model.draws import choice, key_of
 from reasoned_explorer.rendering.buildings import models_of_buildings
+from reasoned_explorer.rendering.fronts import Front, fronts_of, walls_taken
 from reasoned_explorer.rendering.ground import GroundMap, ground_of
 from reasoned_explorer.rendering.library import Library, linear_from_srgb, pack
 from reasoned_explorer.rendering.mesh import Model
@@ -115,9 +116,13 @@ class Scene:
         first_object = FIRST_BUILDING_ID + len(plain.buildings)
         ground = ground_of(plain)
         things = [Placed(mesh, GROUND_ID, place) for mesh, place in ground.markings]
-        for k, (model, place) in enumerate(models_of_buildings(plain.buildings, seed=looks)):
+        fronts = fronts_of(plain)
+        taken = walls_taken(list(fronts.values()))
+        for k, (model, place) in enumerate(
+            models_of_buildings(plain.buildings, seed=looks, fronts=taken, ways=plain.ways)
+        ):
             things.append(Placed(model, FIRST_BUILDING_ID + k, place))
-        things += [_placed(item, looks, first_object + item.id) for item in plain.objects]
+        things += [_placed(item, looks, first_object + item.id, fronts.get(item.id)) for item in plain.objects]
         codes = {name: PICTURE_CLASSES.index(name) for name in CLASS_NAMES}
         classes = [0, 1, *([2] * len(plain.buildings)), *(codes[item.class_name] for item in plain.objects)]
         return cls.of_things(things, ground, np.array(classes, np.uint8))
@@ -140,10 +145,13 @@ class Scene:
         return int(self.library.levels[firsts, 3].astype(np.int64).sum())
 
 
-def _placed(item: WorldObject, seed: int, instance_id: int) -> Placed:
+def _placed(item: WorldObject, seed: int, instance_id: int, front: Front | None) -> Placed:
     variant = key_of(seed, "variant", item.id) % variants_of(item.class_name)
     model = model_of(item.class_name, variant)
     tint = choice(tints_of(item.class_name), seed, "tint", item.id)
+    if front is not None:
+        place_m = (front.x_m, front.y_m, 0.0)
+        return Placed(front.dressed(model), instance_id, place_m, front.heading_rad, front.scale, tint)
     return Placed(model, instance_id, (item.x_m, item.y_m, 0.0), item.heading_rad, _scale(model, item), tint)
 
 
