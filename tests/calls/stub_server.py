@@ -121,6 +121,7 @@ class Behaviour:
         tells_usage: Whether tokens are counted.
         at_once: At most so many are worked on, the others wait; None for all.
         together: Nobody is answered before so many are under way at the same time.
+        decides: It answers typed questions at ``/v1/decisions``, as `sober` would.
     """
 
     latency_s: float = 0.0
@@ -140,6 +141,7 @@ class Behaviour:
     tells_usage: bool = True
     at_once: int | None = None
     together: int = 0
+    decides: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,6 +227,7 @@ class StubServer:
     async def _start(self) -> web.AppRunner:
         app = web.Application(client_max_size=64 * 2**20)
         app.router.add_post("/v1/chat/completions", self._complete)
+        app.router.add_post("/v1/decisions", self._complete)
         # what hangs must not keep the server from ending
         runner = web.AppRunner(app, handle_signals=False, access_log=None, shutdown_timeout=0.01)
         await runner.setup()
@@ -295,7 +298,9 @@ class StubServer:
 
     async def _respond(self, request: web.Request, body: Mapping[str, Any], word: str) -> web.StreamResponse:
         behaviour = self.behaviour
-        refusal = _refusal(behaviour, body)
+        if "questions" in body and not behaviour.decides:
+            return _error(404, "Not Found")
+        refusal = None if "questions" in body else _refusal(behaviour, body)
         if refusal is not None:
             return refusal
         if word in _ERRORS:
@@ -313,7 +318,7 @@ class StubServer:
         completion = self._completion(body)
         if word == "truncated json":
             return web.Response(text=json.dumps(completion)[:-40], content_type="application/json")
-        _MARS.get(word, _unspoiled)(completion)
+        (_mar_decision if "questions" in body else _mar_completion)(completion, word)
         return web.json_response(completion)
 
     async def _half(self, request: web.Request, whole: bytes) -> web.StreamResponse:
@@ -326,6 +331,8 @@ class StubServer:
         return response
 
     def _completion(self, body: Mapping[str, Any]) -> dict[str, Any]:
+        if "questions" in body:
+            return decided(body)
         behaviour = self.behaviour
         text = behaviour.answer(body) if behaviour.answer is not None else self._made_up(body)
         choice: dict[str, Any] = {
@@ -382,6 +389,43 @@ def _instance(schema: Mapping[str, Any], number: int) -> Any:
             return number % 2 == 1
         case _:
             return f"word {number}"
+
+
+def _mar_completion(completion: dict[str, Any], word: str) -> None:
+    _MARS.get(word, _unspoiled)(completion)
+
+
+def _mar_decision(decision: dict[str, Any], word: str) -> None:
+    if word in {"refusal", "filtered"}:
+        decision["answers"] = [{"type": "refusal", "name": each["name"]} for each in decision["answers"]]
+    elif word in {"empty", "no choices", "cut off"}:
+        decision["answers"] = []
+    elif word == "wrong types":
+        decision["answers"] = "yes"
+
+
+def decided(body: Mapping[str, Any]) -> dict[str, Any]:
+    """Answer typed questions: no statement is true, and levels follow from what is asked about."""
+    drawn = hashlib.sha256(json.dumps(body["input"], sort_keys=True).encode()).digest()
+    answers: list[dict[str, Any]] = []
+    for question in body["questions"]:
+        if question["type"] == "predicate":
+            answers.append({"type": "predicate", "name": question.get("name"), "probability": drawn[0] / 1024.0})
+            continue
+        labels = [level["label"] for level in question["levels"]]
+        weights = [1.0 + 8.0 * (place == drawn[1] % len(labels)) for place in range(len(labels))]
+        chances = [
+            {"label": label, "probability": weight / sum(weights), "value": value}
+            for value, (label, weight) in enumerate(zip(labels, weights, strict=True))
+        ]
+        score = sum(each["value"] * each["probability"] for each in chances)
+        answers.append(
+            {"type": "score", "name": question.get("name"), "score": score, "confidence": 0.5, "probabilities": chances}
+        )
+    asked = len(json.dumps(body)) // 4
+    details = {"input_tokens_details": {"cache_write_tokens": 0, "cached_tokens": 0}}
+    usage = {"input_tokens": asked, "output_tokens": 3, "total_tokens": asked + 3, **details}
+    return {"answers": answers, "model": f"{body['model']}-stub", "usage": usage}
 
 
 def sober(body: Mapping[str, Any]) -> str:

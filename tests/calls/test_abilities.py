@@ -57,8 +57,8 @@ def probed(model: Server | Callable[[ChatRequest], ChatAnswer], **options: int) 
 def test_what_a_server_can_do_is_found_by_what_it_answers():
     found = probed(Server("json_schema", "json_object", "logprobs", "vision"))
     assert (found.json_schema, found.json_object, found.top_logprobs, found.vision) == (True, True, 3, True)
-    assert (found.calls, found.tokens, found.model, found.faults) == (15, 330, "served-model", ())
-    assert found.usd == pytest.approx(0.015)
+    assert (found.calls, found.tokens, found.model, found.faults) == (16, 352, "served-model", ())
+    assert found.usd == pytest.approx(0.016)
     assert found.latency_s == pytest.approx(1.0)
     assert found.answers
 

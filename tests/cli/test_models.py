@@ -80,6 +80,26 @@ def test_one_role_may_be_a_models_and_the_others_embedded(server: StubServer) ->
     assert "embedded" in record.header.minds
 
 
+def test_typed_decisions_are_used_where_an_endpoint_offers_them() -> None:
+    with StubServer(Behaviour(answer=sober, decides=True)) as server:
+        code, checked = _rex("minds", "check", "openai:fake", "--base-url", server.base_url)
+        assert code == 0, checked
+        assert "typed decisions      yes" in checked
+        code, shown = _run("--base-url", server.base_url)
+        assert code == 1, shown
+        asked = [each.body for each in server.received if "questions" in each.body]
+    record = read_record(Path("run"))
+    scores = [node for step in record.steps for node in step.tree if node.score is not None]
+    assert {name for each in asked[2:] for name in [question["name"] for question in each["questions"]]} == {
+        *("blocked", "forbidden", "level", "found")
+    }
+    # All five levels have a probability; one alone would be what is said in words.
+    assert scores
+    assert all(node.levels is not None and sum(chance > 0.0 for chance in node.levels) == 5 for node in scores)
+    code, shown = _run("--base-url", server.base_url, "--replay", "run/calls.tape", out="again")
+    assert Path("again/record.jsonl").read_bytes() == Path("run/record.jsonl").read_bytes()
+
+
 def test_a_spent_budget_ends_a_mission_cleanly(server: StubServer) -> None:
     code, shown = _run("--base-url", server.base_url, "--budget-minutes", "0.0001")
     assert code == 1, shown

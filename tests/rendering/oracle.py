@@ -76,7 +76,7 @@ def cast_seconds(scene: Scene, levels: np.ndarray, view: Projection) -> float:
 def soup_of(scene: Scene, levels: np.ndarray, view: Projection) -> tuple[np.ndarray, np.ndarray]:
     """Triangles about the eye that face it, shape (n, 3, 3), and their ids."""
     triangles, owners = [ground(view)], [np.full(2, GROUND_ID)]
-    for i in np.flatnonzero(levels >= 0):
+    for i in np.flatnonzero(levels >= 0).tolist():
         own = corners_of(scene, i, levels[i]) - view.eye
         # Only what faces the eye: backs are not drawn.
         facing = (np.cross(own[:, 1] - own[:, 0], own[:, 2] - own[:, 0]) * own[:, 0]).sum(axis=1) < 0.0
@@ -90,7 +90,8 @@ def rays_of(view: Projection) -> np.ndarray:
     x = (np.arange(view.width) + 0.5 - view.centre_x) / view.focal
     y = (np.arange(view.height) + 0.5 - view.centre_y) / view.focal
     across, down = np.meshgrid(x, y)
-    return (view.axes[2] + across[..., None] * view.axes[0] + down[..., None] * view.axes[1]).reshape(-1, 3)
+    rays: np.ndarray = view.axes[2] + across[..., None] * view.axes[0] + down[..., None] * view.axes[1]
+    return rays.reshape(-1, 3)
 
 
 def _single(rays: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -120,17 +121,18 @@ def corners_of(scene: Scene, i: int, level: int) -> np.ndarray:
     """World coordinates of an instance's triangles, shape (n, 3, 3)."""
     library, instances = scene.library, scene.instances
     _, _, first, count = library.levels[library.prototypes[instances.prototypes[i], 0] + level]
-    points = library.vertices[library.triangles[first : first + count]].astype(np.float64) * instances.scales[i]
+    points = library.vertices[library.triangles[first : first + count]] * instances.scales[i]
     sine, cosine = instances.turns[i]
     east = points[..., 0] * cosine + points[..., 1] * sine
     north = points[..., 1] * cosine - points[..., 0] * sine
-    return np.stack([east, north, points[..., 2]], axis=-1) + instances.places[i]
+    corners: np.ndarray = np.stack([east, north, points[..., 2]], axis=-1) + instances.places[i]
+    return corners
 
 
 def ground(view: Projection) -> np.ndarray:
     """The plane z = 0 about the eye, as far ahead as it is drawn."""
     forward = view.axes[2] * (1.0, 1.0, 0.0)
-    length = np.linalg.norm(forward)
+    length = float(np.linalg.norm(forward))
     if length < 1e-6:
         forward, length = np.array([0.0, 1.0, 0.0]), 1.0
     forward /= length

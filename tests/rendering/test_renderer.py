@@ -149,6 +149,12 @@ def test_thin_double_faces_do_not_darken_themselves(elevation_deg: float, tilt_d
     assert np.ptp(seen[:, 1]) < 16.0
 
 
+def test_mirrors_do_not_show_what_was_drawn_before(park: Scene) -> None:
+    rain = Renderer(park, PRESETS["rain"])
+    first = [digest(rain.picture(pose, CAMERA)) for pose in some_poses()]
+    assert [digest(rain.picture(pose, CAMERA)) for pose in some_poses()[::-1]] == first[::-1]
+
+
 @pytest.mark.parametrize("name", sorted(PRESETS))
 def test_conditions_look_different(name: str, park: Scene) -> None:
     picture = Renderer(park, PRESETS[name]).picture(some_poses()[0], CAMERA, antialias=2)

@@ -10,12 +10,12 @@ import json
 import math
 import statistics
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from PIL import Image
 
-from reasoned_explorer.calls.chat import ANY_OBJECT, ChatAnswer, ChatModel, ChatRequest
+from reasoned_explorer.calls.chat import ANY_OBJECT, ChatAnswer, ChatModel, ChatRequest, DecisionQuestion
 
 #: So many alternatives are asked for at each place: the five levels, each with and without a space before it.
 TOP_LOGPROBS = 10
@@ -35,6 +35,7 @@ class Abilities:
         json_schema: Answers keep to a JSON schema that the question does not mention.
         json_object: Answers are JSON objects where any is asked for.
         top_logprobs: So many alternatives it tells at each place, 0 for none.
+        decisions: It answers typed questions with probabilities (`calls.decisions`).
         vision: It names the colour of pictures.
         parallel: How many calls went on at once, as far as could be seen; 1.0 is one after the other.
         latency_s: Median seconds of a short call, alone, or None where none was answered.
@@ -48,6 +49,7 @@ class Abilities:
     json_schema: bool = False
     json_object: bool = False
     top_logprobs: int = 0
+    decisions: bool = False
     vision: bool = False
     parallel: float = 1.0
     latency_s: float | None = None
@@ -77,6 +79,13 @@ class _Probe:
         self.answers: list[ChatAnswer] = []
         self.latencies_s: list[float] = []
 
+    async def decides(self, request: ChatRequest) -> bool:
+        """Return whether typed questions get typed answers; that most endpoints know none is no fault of theirs."""
+        answer = await self._model.ask(request)
+        self.answers.append(answer if answer.fault is None else replace(answer, fault=None))
+        said = _json(answer.text)
+        return answer.fault is None and isinstance(said, dict) and set(said) == {each.name for each in _DECISIONS}
+
     async def ask(self, request: ChatRequest) -> ChatAnswer:
         started_s = self._now_s()
         answer = await self._model.ask(request)
@@ -98,7 +107,7 @@ class _Probe:
 
 
 async def probe(model: ChatModel, *, together: int = _TOGETHER, now_s: Callable[[], float] | None = None) -> Abilities:
-    """Return what a model can do, in ``6 + together`` short calls, two fewer where pictures are refused at once.
+    """Return what a model can do, in ``7 + together`` short calls at most.
 
     One that only describes pictures is shown ``2 + together`` of them.
 
@@ -126,6 +135,8 @@ async def probe(model: ChatModel, *, together: int = _TOGETHER, now_s: Callable[
         json_schema=_keeps_to_schema(by_schema),
         json_object=isinstance(_json(any_object.text), dict),
         top_logprobs=_alternatives(chosen),
+        decisions=getattr(model, "family", None) is None
+        and await asking.decides(_request(_ABOUT, 7, questions=_DECISIONS)),
         vision=await _sees(asking),
         parallel=max(1.0, min(float(together), at_once)),
     )
@@ -154,8 +165,21 @@ _SCHEMA: dict[str, object] = {
 }
 
 
+_ABOUT = "A bridge leads over a river."
+_DECISIONS = (
+    DecisionQuestion("about_a_bridge", "The text is about a bridge."),
+    DecisionQuestion("length", "How long is the text?", ("short", "middling", "long")),
+)
+
+
 def _request(
-    user: str, key: int, *, schema: Mapping[str, Any] | None = None, top: int = 0, image: bytes | None = None
+    user: str,
+    key: int,
+    *,
+    schema: Mapping[str, Any] | None = None,
+    top: int = 0,
+    image: bytes | None = None,
+    questions: tuple[DecisionQuestion, ...] = (),
 ) -> ChatRequest:
     return ChatRequest(
         role="probe",
@@ -168,6 +192,7 @@ def _request(
         max_tokens=64,
         seed=key,
         top_logprobs=top,
+        questions=questions,
     )
 
 
@@ -177,6 +202,7 @@ def _abilities(
     json_schema: bool = False,
     json_object: bool = False,
     top_logprobs: int = 0,
+    decisions: bool = False,
     vision: bool = False,
     parallel: float = 1.0,
 ) -> Abilities:
@@ -185,6 +211,7 @@ def _abilities(
         json_schema=json_schema,
         json_object=json_object or json_schema,
         top_logprobs=top_logprobs,
+        decisions=decisions,
         vision=vision,
         parallel=parallel,
         latency_s=statistics.median(asking.latencies_s) if asking.latencies_s else None,

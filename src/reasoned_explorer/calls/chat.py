@@ -6,6 +6,21 @@ from typing import Any, Protocol
 
 
 @dataclass(frozen=True, slots=True)
+class DecisionQuestion:
+    """A question whose answer has a type, for endpoints that answer such questions with probabilities.
+
+    Attributes:
+        name: The answer's key.
+        instructions: A statement that is true or not of what the request says; or, with levels, what to rate.
+        levels: Labels of ordered levels, the lowest first; empty for a statement.
+    """
+
+    name: str
+    instructions: str
+    levels: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class ChatRequest:
     """One question to a model.
 
@@ -23,6 +38,8 @@ class ChatRequest:
         temperature: Of sampling, 0 or more.
         seed: Of sampling, where the model takes one.
         top_logprobs: So many likeliest tokens are wanted at each place; 0 for none.
+        questions: Typed decisions about what the request says, in the stead of an answer in words; only for a model
+            that was found to offer them.
     """
 
     role: str
@@ -36,6 +53,7 @@ class ChatRequest:
     temperature: float = 0.0
     seed: int = 0
     top_logprobs: int = 0
+    questions: tuple[DecisionQuestion, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,6 +24,7 @@ from typing import Any
 from reasoned_explorer.calls.chat import ChatAnswer, ChatRequest
 from reasoned_explorer.calls.completion import Reading, parameters, read_completion, shortened, words_of_error
 from reasoned_explorer.calls.connections import Connection, check_sdk, connection_to
+from reasoned_explorer.calls.decisions import decision_parameters, read_decision
 from reasoned_explorer.calls.endpoint import AskingSettings, Endpoint, Structure, endpoint_at
 from reasoned_explorer.calls.pacing import NoTurnError, Sign
 from reasoned_explorer.calls.prices import Price, PriceTable, known_prices
@@ -190,20 +191,24 @@ class OpenAIModel:
         from httpx2 import HTTPError, Response
         from openai import APIConnectionError, APIStatusError, OpenAIError
 
-        sent = parameters(
-            request,
-            self._model,
-            structure=self._settings.structure,
-            length_name=self._length_name,
-            without=self._without,
-            knows_system=knows_system,
-        )
+        if request.questions:
+            path, sent = "/decisions", decision_parameters(request, self._model)
+        else:
+            path = "/chat/completions"
+            sent = parameters(
+                request,
+                self._model,
+                structure=self._settings.structure,
+                length_name=self._length_name,
+                without=self._without,
+                knows_system=knows_system,
+            )
         try:
             async with asyncio.timeout(within_s):
                 # Not `chat.completions.create`: it walks over all that is sent with its types at hand, which takes as
                 # long as everything else together, and nothing here has to be transformed.
                 response = await connection.client.post(
-                    "/chat/completions", cast_to=Response, body=sent, options={"timeout": within_s + 1.0}
+                    path, cast_to=Response, body=sent, options={"timeout": within_s + 1.0}
                 )
                 return _End(Sign.ANSWERED, headers=response.headers, body=response.content)
         except TimeoutError:
@@ -244,7 +249,10 @@ class OpenAIModel:
         if end.body is None:
             return None
         wants_structure = request.schema is not None and self._settings.structure != "none"
-        reading = read_completion(end.body, wants_structure=wants_structure)
+        if request.questions:
+            reading = read_decision(end.body, request.questions)
+        else:
+            reading = read_completion(end.body, wants_structure=wants_structure)
         if reading.fault is not None:
             reading = replace(reading, fault=self.endpoint.scrub(reading.fault))
         spent.add(reading)

@@ -33,7 +33,7 @@ class RequestParts:
         system: Of the instructions.
         question: Of the question.
         pictures: Of each picture.
-        schema: Of the schema; empty where there is none.
+        schema: Of the schema, or of questions with typed answers; empty where there is neither.
         max_tokens: As in the request.
         temperature: Likewise.
         seed: Likewise.
@@ -57,6 +57,11 @@ class RequestParts:
         return _hash(_canonical(asdict(self)).encode())
 
 
+def _form_of(request: ChatRequest) -> Any:
+    """Return the form that an answer is to have: a schema, or questions with typed answers."""
+    return [asdict(each) for each in request.questions] if request.questions else request.schema
+
+
 def parts_of(fingerprint: str, request: ChatRequest) -> RequestParts:
     """Return what identifies a request to a model: everything but its role and its key."""
     return RequestParts(
@@ -65,7 +70,7 @@ def parts_of(fingerprint: str, request: ChatRequest) -> RequestParts:
         system=_hash(request.system.encode(errors="surrogatepass")),
         question=_hash(request.user.encode(errors="surrogatepass")),
         pictures=tuple(map(_hash, request.images)),
-        schema="" if request.schema is None else _hash(_canonical(request.schema).encode()),
+        schema=_hash(_canonical(form).encode()) if (form := _form_of(request)) is not None else "",
         max_tokens=request.max_tokens,
         temperature=float(request.temperature),
         seed=request.seed,

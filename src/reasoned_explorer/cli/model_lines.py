@@ -51,6 +51,7 @@ def lines_about(known: KnownModel) -> list[str]:
         f"{known.model.name}: answers as {able.model or 'it does not say what'}",
         f"on this machine      {'yes' if known.model.is_local else 'no'}",
         f"structured output    {_structure(able)}",
+        f"typed decisions      {'yes' if able.decisions else 'no'}",
         f"log-probabilities    {f'{able.top_logprobs} a place' if able.top_logprobs else 'no'}",
         f"pictures             {'yes' if able.vision else 'no'}",
         f"calls at once        {able.parallel:.1f}, as far as could be seen",

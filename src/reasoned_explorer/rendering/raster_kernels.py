@@ -274,8 +274,8 @@ def fill_triangle(
     if za > NEAR_M and zb > NEAR_M and zc > NEAR_M:
         xa, xb, xc = corners[a, 3], corners[b, 3], corners[c, 3]
         ya, yb, yc = corners[a, 4], corners[b, 4], corners[c, 4]
-        least_x, most_x = min(xa, xb, xc), max(xa, xb, xc)
-        least_y, most_y = min(ya, yb, yc), max(ya, yb, yc)
+        least_x, most_x = min(xa, min(xb, xc)), max(xa, max(xb, xc))
+        least_y, most_y = min(ya, min(yb, yc)), max(ya, max(yb, yc))
     elif za > NEAR_M or zb > NEAR_M or zc > NEAR_M:
         least_x, most_x, least_y, most_y = _bounds_across_near(corners, a, b, c)
     else:
@@ -466,7 +466,8 @@ def read_out(
             owner, nearness = canvas.owners[row, column], canvas.nearness[row, column]
             if samples == 2:
                 nearness = max(nearness, canvas.nearness[row, column + 1])
-                nearness = max(nearness, canvas.nearness[row + 1, column], canvas.nearness[row + 1, column + 1])
+                nearness = max(nearness, canvas.nearness[row + 1, column])
+                nearness = max(nearness, canvas.nearness[row + 1, column + 1])
                 others = (
                     canvas.owners[row, column + 1],
                     canvas.owners[row + 1, column],

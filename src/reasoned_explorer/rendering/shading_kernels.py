@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from reasoned_explorer.rendering.compiling import inlined, kernel
+from reasoned_explorer.rendering.compiling import inlined, kernel, part
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.projection import Projection
 from reasoned_explorer.rendering.raster_kernels import GROUND, SKY, Canvas
@@ -106,7 +106,7 @@ class Light(NamedTuple):
 SUN, SUNLIGHT, SKYLIGHT, BOUNCE, ZENITH, HORIZON, GLOW, CLOUD = range(8)
 
 
-@inlined
+@part
 def _halvings(size: float, most: int) -> tuple[int, float]:
     """How often a size can be halved until it is below 2, at most ``most`` times, and what is left, at least 1."""
     count = 0
@@ -116,7 +116,7 @@ def _halvings(size: float, most: int) -> tuple[int, float]:
     return count, min(max(size, 1.0), 2.0)
 
 
-@inlined
+@part
 def _level_texel(t: Texels, starts: Ints, size: int, material: int, u: float, v: float, level: int) -> Rgb:
     """A texture's colour, bilinear in one level; u and v count repetitions."""
     side = size >> level
@@ -137,7 +137,7 @@ def _level_texel(t: Texels, starts: Ints, size: int, material: int, u: float, v:
     )
 
 
-@inlined
+@part
 def _texel(
     texels: Texels,
     starts: Ints,
@@ -165,7 +165,7 @@ def _texel(
     return red, green, blue
 
 
-@inlined
+@part
 def _sky(tones: Floats, clouds: Texels, x: float, y: float, z: float) -> Rgb:
     """The sky in a direction of length 1."""
     up = max(z, 0.0)
@@ -198,7 +198,7 @@ def _sky(tones: Floats, clouds: Texels, x: float, y: float, z: float) -> Rgb:
     return red, green, blue
 
 
-@inlined
+@part
 def _hazed(tones: Floats, haze_m: float, colour: Rgb, distance: float, x: float, y: float, z: float) -> Rgb:
     """What is left of a colour after the air before it; the direction is of length 1."""
     thick = distance / haze_m
@@ -213,7 +213,7 @@ def _hazed(tones: Floats, haze_m: float, colour: Rgb, distance: float, x: float,
     )
 
 
-@inlined
+@part
 def _mirrored(tones: Floats, clouds: Texels, colour: Rgb, share: float, x: float, y: float, z: float) -> Rgb:
     """A colour with a share of what is seen of the surroundings in a mirrored direction."""
     seen = _sky(tones, clouds, x, y, abs(z))
@@ -227,11 +227,12 @@ def _mirrored(tones: Floats, clouds: Texels, colour: Rgb, share: float, x: float
     )
 
 
-@inlined
+@part
 def _mirror_image(
     nearness: Texels,
     owners: Pages,
     picture: Codes,
+    below: int,
     samples: int,
     eye: Floats,
     axes: Floats,
@@ -247,8 +248,8 @@ def _mirror_image(
     """What is seen from a point (x, y) of the ground in a direction, as far as it is in the picture and drawn already.
 
     Returns:
-        Linear light, and 1, or 0 where nothing was found. What is mirrored lies above in the picture, whose upper rows
-        are there already.
+        Linear light, and 1, or 0 where nothing was found. What is mirrored lies above in the picture, whose rows
+        before ``below`` are there already.
     """
     step = 0.15
     reach = 0.0
@@ -267,12 +268,14 @@ def _mirror_image(
         seen = nearness[row, column]
         if owners[row, column] >= 0 and seen * depth > 1.0 and (depth - step * 1.5 - 0.2) * seen < 1.0:
             row, column = (row >> 1, column >> 1) if samples == 2 else (row, column)
+            if row >= below:
+                break
             red, green, blue = picture[row, column, 0], picture[row, column, 1], picture[row, column, 2]
             return red * red / 65025.0, green * green / 65025.0, blue * blue / 65025.0, 1.0
     return 0.0, 0.0, 0.0, 0.0
 
 
-@inlined
+@part
 def _kind_at(codes: Codes, corner: Floats, x: float, y: float) -> int:
     """The kind of ground at a point: the one with most weight among the four nearest cells."""
     rows, columns = codes.shape
@@ -300,7 +303,7 @@ def _kind_at(codes: Codes, corner: Floats, x: float, y: float) -> int:
     return d if sum_d > most else kind
 
 
-@inlined
+@part
 def _average_at(corner: Floats, averages: Texels, layout: Ints, x: float, y: float, cells: float) -> Rgb:
     """The mean colour of the ground around a point, over about so many cells across."""
     level = _halvings(cells * 0.35, layout.shape[0] - 1)[0]
@@ -577,6 +580,7 @@ def shade(
                                 seen_nearness,
                                 seen_owners,
                                 picture,
+                                y,
                                 samples,
                                 eye,
                                 axes,

@@ -146,8 +146,8 @@ def _cast_triangle(corners: NDArray[np.float64], a: int, b: int, c: int, tile: N
     xb, yb, zb = corners[b, 0], corners[b, 1], corners[b, 2]
     xc, yc, zc = corners[c, 0], corners[c, 1], corners[c, 2]
     side = tile.shape[0]
-    first_x, last_x = math.ceil(min(xa, xb, xc) - 1.0), math.floor(max(xa, xb, xc))
-    first_y, last_y = math.ceil(min(ya, yb, yc) - 1.0), math.floor(max(ya, yb, yc))
+    first_x, last_x = math.ceil(min(xa, min(xb, xc)) - 1.0), math.floor(max(xa, max(xb, xc)))
+    first_y, last_y = math.ceil(min(ya, min(yb, yc)) - 1.0), math.floor(max(ya, max(yb, yc)))
     if first_x >= side or last_x < 0 or first_y >= side or last_y < 0:
         return
     area = (xb - xa) * (yc - ya) - (xc - xa) * (yb - ya)
@@ -155,7 +155,7 @@ def _cast_triangle(corners: NDArray[np.float64], a: int, b: int, c: int, tile: N
         xb, yb, zb, xc, yc, zc = xc, yc, zc, xb, yb, zb
         area = -area
     first_x, last_x, first_y, last_y = max(first_x, 0), min(last_x, side - 1), max(first_y, 0), min(last_y, side - 1)
-    low, high = min(za, zb, zc), max(za, zb, zc)
+    low, high = min(za, min(zb, zc)), max(za, max(zb, zc))
     if area < 1e-9:  # seen from its edge: a line
         slope_x, slope_y = 0.0, 0.0
         za = high

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from reasoned_explorer.minds.prompted.decisions import load_decisions
 from reasoned_explorer.minds.prompted.prompt import ROLES, Form, load_prompt
 from reasoned_explorer.minds.prompted.reading import Finding, Judgement, read_finding, read_judgement, read_scene
 from reasoned_explorer.model import SettingsError
@@ -27,8 +28,9 @@ type = "boolean"
 def test_a_changed_prompt_has_a_new_version(role: str):
     prompt = load_prompt(role)
     data = {"goal": "G", "scene": "S", "which": "W"}
-    told = [prompt.told(form) for form in Form]
-    asked = [prompt.asked(data, form, again=again) for form in Form for again in ("", "R")]
+    forms = (Form.JSON, Form.TEXT)  # typed questions have a file and a version of their own
+    told = [prompt.told(form) for form in forms]
+    asked = [prompt.asked(data, form, again=again) for form in forms for again in ("", "R")]
     said = "\n".join([*told, *asked, json.dumps(prompt.answer_schema)])
     digest = hashlib.sha256(said.encode()).hexdigest()[:12]
     assert DIGESTS.get(prompt.id) == digest, f"{prompt.id} says something new ({digest}): give it a new version"
@@ -89,3 +91,37 @@ def test_a_file_that_is_no_prompt_is_refused_with_all_its_faults(text: str, said
     with pytest.raises(SettingsError) as refused:
         load_prompt("checker", tmp_path)
     assert said in str(refused.value)
+
+
+def test_changed_decisions_have_a_new_version():
+    decisions = load_decisions()
+    said = repr(sorted(decisions.by_role.items()))
+    digest = hashlib.sha256(said.encode()).hexdigest()[:12]
+    assert (decisions.id, digest) == ("decisions/1", "76cd550325c7")
+
+
+def test_a_decision_is_asked_about_fenced_data_alone():
+    prompt = load_prompt("evaluator")
+    told, asked = prompt.told(Form.DECISION), prompt.asked({"goal": "G", "scene": "S"}, Form.DECISION)
+    assert "Example" not in told
+    assert not any(word in told + asked for word in ("JSON", "LEVEL:"))
+    assert "<<<GOAL" in asked
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong"),
+    [
+        ("version = 1", "evaluator: Field required"),
+        ("version = ", "a TOML file"),
+        ('version = 1\n[[evaluator]]\nname = "level"\ninstructions = "?"\n[[checker]]\nname = "x"\ninstructions = "?"',
+         "checker asks x; expected found"),
+    ],
+)  # fmt: skip
+def test_own_decisions_are_what_the_roles_need(text: str, wrong: str, tmp_path: Path):
+    (tmp_path / "decisions.toml").write_text(text)
+    with pytest.raises(SettingsError, match=wrong):
+        load_decisions(tmp_path)
+
+
+def test_a_folder_of_own_prompts_need_not_have_decisions(tmp_path: Path):
+    assert load_decisions(tmp_path).id == load_decisions().id

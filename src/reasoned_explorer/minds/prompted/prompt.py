@@ -33,6 +33,8 @@ class Form(StrEnum):
 
     JSON = "json"
     TEXT = "text"
+    DECISION = "decision"
+    """By typed questions beside the text (`decisions`): nothing need be said of a form."""
 
 
 class Example(BaseModel):
@@ -82,7 +84,8 @@ class Prompt(BaseModel):
     def told(self, form: Form) -> str:
         """Return the system message for a form of answer: task, rule of the fence, examples."""
         parts = [self.system.strip(), _FENCE_RULE.strip()]
-        for number, example in enumerate(self.examples, 1):
+        # Examples show a form of answer, and here there is none to show.
+        for number, example in enumerate(() if form is Form.DECISION else self.examples, 1):
             data = {"goal": example.goal, "scene": example.scene}
             question = self._filled(data)
             parts.append(f"Example {number}.\n{question}\n\nThe right answer:\n{_answered(example.answer, form)}")
@@ -96,7 +99,9 @@ class Prompt(BaseModel):
             form: How to answer.
             again: Why the last answer to it could not be used, in words of ours; empty where it is asked first.
         """
-        parts = [self._filled(data), (self.as_json if form is Form.JSON else self.as_text).strip()]
+        parts = [self._filled(data)]
+        if form is not Form.DECISION:
+            parts.append((self.as_json if form is Form.JSON else self.as_text).strip())
         if again:
             parts.append(f"Your last answer to this could not be used: {again}. Answer again, in just that form.")
         return "\n\n".join(parts)

@@ -15,6 +15,7 @@ from reasoned_explorer.calls.abilities import Abilities
 from reasoned_explorer.calls.chat import ANY_OBJECT, ChatAnswer, ChatRequest
 from reasoned_explorer.minds.context import Minds
 from reasoned_explorer.minds.prompted.chances import level_chances, yes_chance
+from reasoned_explorer.minds.prompted.decisions import Decisions, load_decisions
 from reasoned_explorer.minds.prompted.prompt import ROLES, Form, Prompt, load_prompt
 from reasoned_explorer.minds.prompted.reading import (
     CUT_OFF,
@@ -110,8 +111,10 @@ class PromptedMinds:
     tallies: dict[str, Tally] = field(default_factory=lambda: {role: Tally() for role in ROLES})
     _prompts: dict[str, Prompt] = field(init=False)
     _told: dict[str, str] = field(init=False)
+    _decisions: Decisions = field(init=False)
 
     def __post_init__(self) -> None:
+        self._decisions = load_decisions(self.settings.prompts)
         self._prompts = {role: load_prompt(role, self.settings.prompts) for role in ROLES}
         self._told = {role: prompt.told(self._form(role)) for role, prompt in self._prompts.items()}
 
@@ -204,6 +207,8 @@ class PromptedMinds:
         return said, answer
 
     def _form(self, role: str) -> Form:
+        if self.abilities.decisions and role in self._decisions.by_role:
+            return Form.DECISION
         # A description needs no form of its own unless the server holds the model to it; a decision is better held.
         can = self.abilities
         return Form.JSON if can.json_schema or (can.json_object and role != "visionary") else Form.TEXT
@@ -213,6 +218,15 @@ class PromptedMinds:
     ) -> ChatRequest:
         prompt, can = self._prompts[role], self.abilities
         form = self._form(role)
+        if form is Form.DECISION:
+            return ChatRequest(
+                role=role,
+                key=key,
+                system=self._told[role],
+                user=prompt.asked(data, form),
+                prompt=f"{prompt.id} {self._decisions.id}",
+                questions=self._decisions.by_role[role],
+            )
         schema = None if form is Form.TEXT else prompt.answer_schema if can.json_schema else ANY_OBJECT
         return ChatRequest(
             role=role,
