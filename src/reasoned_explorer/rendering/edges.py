@@ -9,10 +9,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from reasoned_explorer.rendering.crossings import Crossings
-from reasoned_explorer.rendering.ground_map import LOOKS, ground_colours, ground_materials
+from reasoned_explorer.rendering.ground_map import ground_colours, ground_materials
 from reasoned_explorer.rendering.kerbs import (
     KERBED,
-    Bools,
     Borders,
     Floats,
     Ints,
@@ -31,6 +30,8 @@ from reasoned_explorer.world.world import Region, Way, World
 _HALF_M = 0.22
 #: How far from the border it is looked which ground lies there, and how often along it, metres.
 _SIDE_M, _STEP_M = 0.45, 0.4
+#: How many steps a strip has at most.
+_LONGEST = 25
 #: Height of the lowest strips, and how much higher those of the next kind lie: no two kinds in one plane, metres.
 _LOWEST_M, _LAYER_M = 0.002, 0.0004
 #: What has no edge of its own: water has shores, buildings walls, beyond the world there is nothing.
@@ -125,18 +126,12 @@ def _seen_stretches(
     kerbed |= (beyond == Ground.ROAD) & np.isin(kinds[row], KERBED)
     hidden = np.flatnonzero(kept & kerbed)
     kept[hidden[~at_crossings(point[hidden], crossings)]] = False
-    first = kept & ~_goes_on(row, beyond, kept)
-    last = kept & ~_goes_on(row[::-1], beyond[::-1], kept[::-1])[::-1]
+    goes_on = kept[1:] & kept[:-1] & (row[1:] == row[:-1]) & (beyond[1:] == beyond[:-1])
+    goes_on &= place[1:] % _LONGEST != 0
+    first, last = kept & ~np.append(False, goes_on), kept & ~np.append(goes_on, False)
     begin, end = place[first] / count[row[first]], (place[last] + 1.0) / count[row[last]]
     whole = row[first]
     return _parts(border, whole, begin[:, None], end[:, None]), kinds[whole], beyond[first]
-
-
-def _goes_on(row: Ints, beyond: Ints, kept: Bools) -> Bools:
-    """Return which pieces go on with what the piece before them began."""
-    found = np.zeros(len(row), np.bool_)
-    found[1:] = kept[:-1] & (row[1:] == row[:-1]) & (beyond[1:] == beyond[:-1])
-    return found
 
 
 def _parts(border: Borders, row: Ints, begin: Floats, end: Floats) -> Borders:
@@ -164,7 +159,3 @@ def _strips(border: Borders, kinds: Ints, off_m: float) -> Patch:
     return Patch.of(
         corners, plan_uvs(corners), colours=colours[kinds], materials=ground_materials()[kinds], owners=owners
     )
-
-
-#: Paint on roads lies higher than all strips.
-HIGHEST_M = _LOWEST_M + _LAYER_M * (len(LOOKS) - 1)
