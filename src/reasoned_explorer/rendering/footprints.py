@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from reasoned_explorer.rendering.triangulation import starts_of
@@ -108,6 +109,13 @@ class Footprints:
         """Of each building, whether all its corners can be mitred, shape (count,)."""
         dot = np.sum(self.outwards[self.before] * self.outwards, axis=1)
         return np.asarray(np.bincount(self.owners[1.0 + dot < _SHARPEST], minlength=self.count) == 0)
+
+    def cover(self, points: Floats) -> Bools:
+        """Return which points, shape (n, 2), lie in a footprint."""
+        found = np.zeros(len(points), np.bool_)
+        tree = shapely.STRtree(shapely.polygons(self.corners[self.triangles]))
+        found[tree.query(shapely.points(points), predicate="intersects")[0]] = True
+        return found
 
     @cached_property
     def triangle_owners(self) -> Ints:
