@@ -8,6 +8,7 @@ import typer
 from reasoned_explorer import __version__
 from reasoned_explorer.cli.answers import answering
 from reasoned_explorer.cli.bench_app import add_commands
+from reasoned_explorer.cli.look_app import add_look
 from reasoned_explorer.cli.minds_app import minds_app
 from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices, Yes
 from reasoned_explorer.cli.worlds_app import worlds_app
@@ -22,6 +23,7 @@ app = typer.Typer(
 app.add_typer(worlds_app, name="worlds")
 app.add_typer(minds_app, name="minds")
 add_commands(app)
+add_look(app)
 
 
 def _version(*, value: bool) -> None:

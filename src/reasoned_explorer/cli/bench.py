@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from reasoned_explorer.cli.answers import ExitCode, complain
-from reasoned_explorer.cli.bench_models import ReadyModels, models_ready
+from reasoned_explorer.cli.bench_models import ReadyModels, models_ready, tidy
 from reasoned_explorer.cli.console import Output
 from reasoned_explorer.cli.model_lines import lines_of_forecast
 from reasoned_explorer.cli.models import ModelOptions
@@ -176,7 +176,9 @@ def run_from_options(
         except (KeyboardInterrupt, RecordWriteError):
             complain(f"what is finished is kept: go on with --resume {folder}")
             raise
-        if denied is not None:
+        if denied is None:
+            tidy(folder)
+        else:
             complain(f"{denied}: what is finished is kept, and so are the calls of missions that were under way")
             complain(f"go on with --resume {folder} and another budget")
     return folder

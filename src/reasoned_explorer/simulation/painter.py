@@ -12,7 +12,7 @@ from reasoned_explorer.model import Camera, Fault, SettingsError
 from reasoned_explorer.model.checks import is_within
 
 if TYPE_CHECKING:
-    from reasoned_explorer.rendering.renderer import Renderer
+    from reasoned_explorer.rendering.renderer import Picture, Renderer
     from reasoned_explorer.world.atlas import Atlas
 
 #: Sides of pictures that can be taken, pixels.
@@ -53,14 +53,18 @@ class Painter:
         self._side_px = side_px
 
     def paint(self, pose: Pose, camera: Camera) -> NDArray[np.uint8]:
-        """Return what a camera sees, RGB, shape (side, side, 3).
+        """Return what a camera sees, RGB, shape (side, side, 3); see `picture`."""
+        return self.picture(pose, camera).colour
+
+    def picture(self, pose: Pose, camera: Camera) -> "Picture":
+        """Return what a camera sees, with depth and ids.
 
         Args:
             pose: Of the camera: its height is ``z_m``; it looks along its heading, level.
             camera: Its field of view counts.
         """
         square = replace(camera, width_px=self._side_px, height_px=self._side_px)
-        return self._renderer.picture(pose, square, antialias=_ANTIALIAS).colour
+        return self._renderer.picture(pose, square, antialias=_ANTIALIAS)
 
 
 #: Renderers of worlds that are in use, by conditions: a scene takes a second, and many missions share one.
