@@ -100,7 +100,7 @@ def test_a_mission_with_pictures_is_replayed_bit_for_bit(server: StubServer) -> 
     assert Path("again/record.jsonl").read_bytes() == Path("run/record.jsonl").read_bytes()
     code, shown = _run(server, "--replay", "run/calls.tape", "--conditions", "fog", out="fog")
     assert code == 2
-    assert "settings is" in shown
+    assert "settings.conditions is 'fog'" in shown
 
 
 def test_a_view_whose_call_is_lost_is_left_out_and_the_record_says_why() -> None:

@@ -8,6 +8,7 @@ import typer
 from reasoned_explorer import __version__
 from reasoned_explorer.cli.answers import answering
 from reasoned_explorer.cli.bench_app import add_commands
+from reasoned_explorer.cli.look_app import add_look
 from reasoned_explorer.cli.minds_app import minds_app
 from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices, Yes
 from reasoned_explorer.cli.worlds_app import worlds_app
@@ -22,6 +23,7 @@ app = typer.Typer(
 app.add_typer(worlds_app, name="worlds")
 app.add_typer(minds_app, name="minds")
 add_commands(app)
+add_look(app)
 
 
 def _version(*, value: bool) -> None:
@@ -103,6 +105,9 @@ def run(
     images: Annotated[bool, typer.Option("--images/--no-images", help="Keep the pictures of all views, PNG.")] = False,
     picture_px: Annotated[int, typer.Option(help="Side of a picture, pixels.")] = 448,
     conditions: Annotated[str, typer.Option(help="In pictures: clear, overcast, dusk, fog or rain.")] = "clear",
+    eyes: Annotated[
+        str, typer.Option(help="What simulated captioners go by: lines or pixels; see rex names.")
+    ] = "lines",
     yes: Yes = False,
     map_: Annotated[bool, typer.Option("--map/--no-map", help="Draw the map picture.")] = True,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the summary.")] = False,
@@ -142,6 +147,7 @@ def run(
             images=images,
             picture_px=picture_px,
             conditions=conditions,
+            eyes=eyes,
             quiet=quiet,
             models=ModelOptions(
                 base_url=base_url,
@@ -175,7 +181,7 @@ def show(
 @app.command()
 @answering
 def names() -> None:
-    """List what can be picked by name: planners, minds, captioners, vehicles, worlds, latency profiles."""
+    """List what can be picked by name: planners, minds, captioners, eyes, vehicles, worlds, latency profiles."""
     from reasoned_explorer.cli.names import print_names
 
     print_names()

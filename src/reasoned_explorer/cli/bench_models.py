@@ -2,7 +2,9 @@
 
 import time
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from reasoned_explorer.calls.budget import Budget
@@ -106,3 +108,10 @@ def models_ready(options: ModelOptions, plan: BenchPlan, kept: Mapping[str, Any]
     known = desk.prepare(plan.models)
     real = [place.name for place in plan.split.places if place.city != GENERATED]
     return ReadyModels(base_url, known, options.agree(desk, plan.base.captioner, real))
+
+
+def tidy(folder: Path) -> None:
+    """Take away from the folder of a run that is whole what only an unfinished one needs."""
+    with suppress(OSError):
+        (folder / SPENT_NAME).unlink(missing_ok=True)
+        (folder / UNDER_WAY_NAME).rmdir()

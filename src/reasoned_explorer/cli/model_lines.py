@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable
+from typing import Any
 
 from reasoned_explorer.calls.abilities import Abilities
 from reasoned_explorer.calls.chat import is_model_name
@@ -34,8 +35,9 @@ def check_model(name: str, options: ModelOptions) -> None:
         raise SettingsError("model", [Fault(f"{name!r}", "openai:MODEL, e.g. openai:gpt-4o-mini")])
     (known,) = options.desk().prepare([name])
     console = Output()
-    for line in lines_about(known):
-        console.print(line, markup=False, soft_wrap=True)
+    for lines in (lines_about, lines_of_costs):
+        for line in lines(known):
+            console.print(line, markup=False, soft_wrap=True)
 
 
 #: Where a mission is counted in for ``rex minds check``, and what is sought there.
@@ -45,9 +47,9 @@ _MINI = 56
 
 
 def lines_about(known: KnownModel) -> list[str]:
-    """Return in words what a model can do and what a mission with it takes, as far as can be told."""
+    """Return in words what a model can do."""
     able = known.abilities
-    lines = [
+    return [
         f"{known.model.name}: answers as {able.model or 'it does not say what'}",
         f"on this machine      {'yes' if known.model.is_local else 'no'}",
         f"structured output    {_structure(able)}",
@@ -61,15 +63,21 @@ def lines_about(known: KnownModel) -> list[str]:
         *(f"answered with        {fault}" for fault in able.faults),
         *(f"leaves out           {what}" for what in sorted(getattr(known.model, "left_out", ()))),
     ]
+
+
+def lines_of_costs(known: KnownModel) -> list[str]:
+    """Return in words what a mission with a model takes, as far as can be told."""
+    able = known.abilities
     if able.latency_s is None:
-        return lines
-    settings = MissionSettings(minds=known.model.name, clock="mixed")
+        return []
+    only_sees = getattr(known.model, "only_describes", False)
+    who: dict[str, Any] = {"captioner" if only_sees else "minds": known.model.name}
+    settings = MissionSettings(clock="mixed", **who)
     world = Atlas(open_world(_SAMPLE_WORLD))
     samples = [Sample(goal, world) for goal in _SAMPLE_GOALS]
     one = forecast(samples, settings, {known.model.name: ModelFacts(able, known.price)})
     row_usd = None if one.usd is None else one.usd * _MINI
     return [
-        *lines,
         f"a mission of llm-rrt, about {one.calls:,.0f} calls: {_minutes(one.minutes)}, {_money(one.usd)}",
         f"a row of the split mini, {_MINI} missions: {_minutes(_MINI * one.minutes)}, {_money(row_usd)}",
         f"({ASSUMED})",
@@ -121,6 +129,8 @@ def _samples_of(plan: BenchPlan) -> list[Sample]:
 
 
 def _minutes(minutes: float) -> str:
+    if minutes < 1.0:
+        return f"{60.0 * minutes:.0f} s"
     return f"{minutes / 60.0:.1f} h" if minutes >= 90.0 else f"{minutes:.1f} min"
 
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from reasoned_explorer.geometry import Pose, normalise_heading_rad
@@ -11,6 +12,8 @@ from reasoned_explorer.world.world import World
 
 #: lon0, lat0, lon1, lat1.
 BoxDeg = tuple[float, float, float, float]
+#: A camera stands so high above the ground, metres.
+_HEIGHT_RANGE_M = (0.05, 9000.0)
 
 
 def parse_bbox(text: str | None) -> BoxDeg | None:
@@ -71,6 +74,76 @@ def parse_start(text: str | None, world: World) -> Pose | None:
             raise StartError("start", [Fault(what, _extent_deg(world), "leave --start out for a random one")])
     heading_deg = numbers[2] if len(numbers) == 3 else 0.0
     return Pose(x_m, y_m, 0.0, normalise_heading_rad(math.radians(heading_deg)))
+
+
+def check_view_form(text: str | None) -> None:
+    """Check what can be known of a viewpoint before its world is there; see `parse_view`.
+
+    Raises:
+        StartError: If it is not two to four finite numbers, or its heading or height is none.
+    """
+    if text is None:
+        return
+    count = text.count(",") + 1
+    rest, _, faults = _without_height(text)
+    if count in {2, 3, 4}:
+        faults = [*_start_numbers(rest)[1], *faults]
+    else:
+        faults = [Fault(f"{count} values", "2 to 4 values with commas between them"), *_numbers(text, count)[1]]
+    if faults:
+        form = "lat,lon,z,heading in a real place, x,y,z,heading elsewhere: metres and degrees"
+        raise StartError(f"viewpoint {text!r} (expected {form})", faults)
+
+
+def parse_view(text: str, world: World, *, height_m: float) -> Pose:
+    """Return where a camera stands and which way it looks.
+
+    Args:
+        text: As `parse_start` reads it, with metres above the ground before the heading where there are four numbers.
+        world: Whose frame it is.
+        height_m: Above the ground where the text says nothing of it.
+
+    Raises:
+        StartError: If it is not two to four finite numbers, its heading or height is none, or it is off the map.
+    """
+    check_view_form(text)
+    rest, given_m, _ = _without_height(text)
+    try:
+        pose = parse_start(rest, world)
+    except StartError as error:
+        # What a start may do instead, a viewpoint may not: there is no random one.
+        raise StartError("viewpoint", [replace(fault, remedy="") for fault in error.faults]) from error
+    if pose is None:
+        raise AssertionError  # there is a text
+    if not world.bounds.contains(pose.x_m, pose.y_m):
+        bounds = world.bounds
+        extent = f"x {bounds.min_x_m:g} to {bounds.max_x_m:g}, y {bounds.min_y_m:g} to {bounds.max_y_m:g} metres"
+        raise StartError("viewpoint", [Fault(f"{pose.x_m:g}, {pose.y_m:g} is off {world.name}", extent)])
+    return replace(pose, z_m=height_m if given_m is None else given_m)
+
+
+def parse_size(text: str) -> tuple[int, int]:
+    """Return width and height of a picture, pixels, from ``WIDTHxHEIGHT``.
+
+    Raises:
+        SettingsError: If it is not two whole numbers with an x between them.
+    """
+    parts = [part.strip() for part in text.lower().replace("×", "x").split("x")]
+    if len(parts) != 2 or not all(part.isascii() and part.isdecimal() and len(part) <= 9 for part in parts):
+        raise SettingsError("--size", [Fault(f"{text!r:.60}", "two whole numbers with an x between them, as 1024x768")])
+    return int(parts[0]), int(parts[1])
+
+
+def _without_height(text: str) -> tuple[str, float | None, list[Fault]]:
+    """Return a viewpoint without its height, the height, metres, and what is wrong with it."""
+    parts = text.split(",")
+    if len(parts) != 4:
+        return text, None, []
+    numbers, faults = _numbers(parts.pop(2), 1)
+    low, high = _HEIGHT_RANGE_M
+    if numbers and not faults and not low <= numbers[0] <= high:
+        faults.append(Fault(f"height {numbers[0]:g}", f"{low:g} to {high:,g} metres above the ground"))
+    return ",".join(parts), numbers[0] if numbers else None, faults
 
 
 def _start_numbers(text: str) -> tuple[list[float], list[Fault]]:

@@ -2,5 +2,6 @@
 
 from reasoned_explorer.clock.clock import Clock, MixedClock, RealClock, VirtualClock
 from reasoned_explorer.clock.live_thread import run_live
+from reasoned_explorer.clock.stepped import SteppedClock
 
-__all__ = ["Clock", "MixedClock", "RealClock", "VirtualClock", "run_live"]
+__all__ = ["Clock", "MixedClock", "RealClock", "SteppedClock", "VirtualClock", "run_live"]

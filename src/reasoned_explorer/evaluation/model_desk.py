@@ -269,14 +269,22 @@ class ModelDesk:
         tape = self._player or self._past
         if tape is None:
             return
-        taped: Mapping[str, Any] = tape.about.get("mission", {})
         faults = [
-            Fault(f"{key} is {mission.get(key)!r:.80}", f"{taped.get(key)!r:.80}, as on the tape")
-            for key in dict.fromkeys([*taped, *mission])
-            if taped.get(key) != mission.get(key)
+            Fault(f"{name} is {here!r:.80}", f"{there!r:.80}, as on the tape")
+            for name, here, there in _differences(mission, tape.about.get("mission", {}))
         ]
         if faults:
             raise RecordError("replay", faults)
+
+
+def _differences(here: Mapping[str, Any], there: Mapping[str, Any], of: str = "") -> Iterator[tuple[str, Any, Any]]:
+    """Return what two missions have differently: its name, with what it is part of, and both values."""
+    for name in dict.fromkeys([*there, *here]):
+        one, other = here.get(name), there.get(name)
+        if isinstance(one, Mapping) and isinstance(other, Mapping):
+            yield from _differences(one, other, f"{of}{name}.")
+        elif one != other:
+            yield f"{of}{name}", one, other
 
 
 def _found_out(model: ChatModel, *, together: int = _TOGETHER) -> Abilities:

@@ -196,9 +196,7 @@ class _Slope:
     near: Floats
 
 
-def _gable_slope(
-    slope: _Slope, low: Floats, high: Floats, styles: Styles, owner: Ints, *, thick: bool
-) -> list[Patch]:
+def _gable_slope(slope: _Slope, low: Floats, high: Floats, styles: Styles, owner: Ints, *, thick: bool) -> list[Patch]:
     """Return one side of gabled roofs, with their eaves and verges."""
     along = _unit(slope.second - slope.first)
     out = np.column_stack([along[:, 1], -along[:, 0]])

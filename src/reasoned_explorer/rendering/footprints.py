@@ -8,8 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from reasoned_explorer.rendering.triangulation import starts_of
-from reasoned_explorer.rendering.triangulation_kernels import tidy_rings, triangulate_all
+from reasoned_explorer.rendering.triangulation import starts_of, tidy_rings, triangulate_all
 from reasoned_explorer.world.rounding import millimetres
 from reasoned_explorer.world.world import Building
 
@@ -70,7 +69,7 @@ class Footprints:
         ring_starts = starts_of(sizes[used])
         per_building = np.bincount(owner[used], minlength=len(buildings))
         corners = whole[kept]
-        triangles, _ = triangulate_all(corners, ring_starts, starts_of(per_building))
+        triangles = triangulate_all(corners, ring_starts, starts_of(per_building))
         after, before = _neighbours(ring_starts)
         return cls(
             len(buildings),
