@@ -15,6 +15,7 @@ from reasoned_explorer.rendering.mesh import Mesh, Model
 from reasoned_explorer.world.generator import generate_world
 from reasoned_explorer.world.taxonomy import Ground
 from reasoned_explorer.world.world import Building, Way
+from tests.rendering.meshes import fighting
 from tests.world.worlds import box
 
 Floats = NDArray[np.float64]
@@ -265,3 +266,11 @@ def test_a_door_that_no_map_knows_leads_to_a_way_and_not_into_the_neighbour() ->
 
 def test_no_buildings_are_no_trouble() -> None:
     assert models_of_buildings([], seed=0) == []
+
+
+def test_no_two_colours_of_a_building_lie_in_one_plane_and_nothing_lies_below_the_ground() -> None:
+    world = generate_world("town", seed=6, size_m=300.0)
+    for model, _ in models_of_buildings(world.buildings, seed=6, ways=world.ways):
+        for mesh in model.levels[:2]:
+            assert not len(fighting(mesh))
+            assert mesh.vertices[:, 2].min() >= 0.0

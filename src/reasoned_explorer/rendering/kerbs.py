@@ -151,9 +151,15 @@ def at_crossings(points: Floats, crossings: Crossings) -> Bools:
     found = np.zeros(len(points), np.bool_)
     if not len(points) or not len(crossings.middles):
         return found
-    tree = shapely.STRtree(shapely.points(crossings.middles))
     reach = float((crossings.road_m / 2.0 + crossings.walk_m).max()) + 2.0
-    at, crossing = tree.query(shapely.points(points), predicate="dwithin", distance=reach)
+    # Most points are nowhere near one: squares as wide as the reach say which.
+    square, crossed = (np.floor(each / reach).astype(np.int64) for each in (points, crossings.middles))
+    steps = np.array([-1, 0, 1])
+    around = _keys(crossed[:, :1, None] + steps[:, None], crossed[:, 1:, None] + steps)
+    candidates = np.flatnonzero(np.isin(_keys(square[:, 0], square[:, 1]), np.unique(around)))
+    tree = shapely.STRtree(shapely.points(crossings.middles))
+    at, crossing = tree.query(shapely.points(points[candidates]), predicate="dwithin", distance=reach)
+    at = candidates[at]
     off = points[at] - crossings.middles[crossing]
     walk = crossings.walks[crossing]
     aside = np.abs(off[:, 0] * walk[:, 1] - off[:, 1] * walk[:, 0])
@@ -161,6 +167,11 @@ def at_crossings(points: Floats, crossings: Crossings) -> Bools:
     near = (aside < crossings.walk_m[crossing] / 2.0 + 0.3) & (ahead < crossings.road_m[crossing] / 2.0 + 3.0)
     found[at[near]] = True
     return found
+
+
+def _keys(column: Ints, row: Ints) -> Ints:
+    """Return one number for each square."""
+    return np.asarray(column * 1_000_003 + row)
 
 
 def _edging(border: Borders, *, high_m: float, wide_m: float) -> list[Patch]:

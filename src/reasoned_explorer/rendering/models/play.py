@@ -83,7 +83,7 @@ def _slide(builder: MeshBuilder, variant: int) -> None:
         builder.beam(frame, (-1.42, y * 1.1, 2.16), (-0.74, y * 1.1, 2.16), 0.08, 0.08)
         if builder.detail == 0:
             builder.beam(frame, (-1.38, y, 1.8), (-0.78, y, 1.8), 0.04, 0.04)
-            builder.beam(frame, (1.2, y, 0), (1.2, y, 0.3), 0.05, 0.05, up=(1, 0, 0))
+            builder.beam(frame, (1.2, y, 0), (1.2, y, 0.3), 0.05, 0.03, up=(0, 1, 0))
     for (x0, z0), (x1, z1) in pairwise(path):
         builder.beam(chute, (x0, 0, z0), (x1, 0, z1), 0.62, 0.04)
     builder.box(PALE_WOOD, (-1.42, -0.34, 1.41), (-0.72, 0.34, 1.47))
@@ -144,7 +144,7 @@ def _climbing_frame(builder: MeshBuilder, variant: int) -> None:
         for y in ys:
             builder.cylinder(SIGN_BLUE, (xs[0], y, z), (xs[-1], y, z), 0.035, sides=sides)
         for x in xs:
-            builder.cylinder(SIGN_YELLOW, (x, ys[0], z), (x, ys[-1], z), 0.035, sides=sides)
+            builder.cylinder(SIGN_YELLOW, (x, ys[0], z - 0.05), (x, ys[-1], z - 0.05), 0.035, sides=sides)
 
 
 def _tower(builder: MeshBuilder) -> None:

@@ -106,12 +106,12 @@ def _broadleaf(builder: MeshBuilder, kind: _Kind) -> None:
         keep = np.arange(0, kind.clumps, 2)
         cores = Crown(cores.centres[keep], cores.radii[keep] * (2.2 if kind.airy else 1.75), crown.middle, crown.reach)
     add_cores(builder, kind.leaves, cores, rng, fine=False)
-    count, size = ((284, 0.45), (115, 0.66), (22, 0.9))[builder.detail]
+    count, size = ((270, 0.45), (115, 0.66), (22, 0.9))[builder.detail]
     thin = 0.9 if kind.airy else 1.0
     add_tufts(builder, kind.leaves, crown, rng, count=count, size_m=size * thin)
     if builder.detail == 0:
         # Sprays around the masses: seen from below, they are what the outline is made of.
-        add_tufts(builder, kind.leaves, crown, rng, count=300, size_m=0.29 * thin, spread=1.12, slim=0.8)
+        add_tufts(builder, kind.leaves, crown, rng, count=300, size_m=0.29 * thin, spread=1.06, slim=0.75)
 
 
 def _far_crown(builder: MeshBuilder, kind: _Kind) -> None:
