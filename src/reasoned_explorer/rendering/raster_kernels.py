@@ -141,9 +141,7 @@ def _ball_in_view(balls: Floats, i: int, view: Projection) -> bool:
 
 
 @part
-def _bound(
-    boxes: Floats, prototype: int, matrix: Floats, width: int, height: int
-) -> tuple[float, int, int, int, int]:
+def _bound(boxes: Floats, prototype: int, matrix: Floats, width: int, height: int) -> tuple[float, int, int, int, int]:
     """A box's greatest nearness, or 0 if it is not in the picture; first and last column and row that it may cover."""
     least_x, most_x, least_y, most_y = math.inf, -math.inf, math.inf, -math.inf
     least_z, most_z = math.inf, -math.inf
