@@ -98,7 +98,7 @@ _PARTS: Mapping[str, Callable[[Scene], None]] = {
 }
 
 
-class _Teller(numba.core.event.Listener):
+class _Teller(numba.core.event.Listener):  # type: ignore[misc]
     """Says a line for each function that was compiled."""
 
     def on_start(self, event: numba.core.event.Event) -> None:

@@ -365,7 +365,7 @@ def _collect(
         if not everything and not _ball_in_view(cell_balls, cell, view):
             continue
         for k in range(starts[cell], starts[cell + 1]):
-            i = np.int64(members[k])  # of the type that cells have: numba compiles a function for each
+            i = members[k] + 0  # a wide number, as cells are: numba compiles a function once for each type
             if not everything:
                 if not _ball_in_view(balls, i, view):
                     continue
@@ -438,7 +438,7 @@ def draw(
         k = scratch.ordered[turn]
         if not everything and _hidden(canvas, rectangles, k, scratch.nearest[k]):
             continue
-        i = np.int64(scratch.candidates[k])
+        i = scratch.candidates[k] + 0
         prototype = instances.prototypes[i]
         level = 0
         if not everything:
