@@ -141,9 +141,7 @@ def _ball_in_view(balls: Floats, i: int, view: Projection) -> bool:
 
 
 @part
-def _bound(
-    boxes: Floats, prototype: int, matrix: Floats, width: int, height: int
-) -> tuple[float, int, int, int, int]:
+def _bound(boxes: Floats, prototype: int, matrix: Floats, width: int, height: int) -> tuple[float, int, int, int, int]:
     """A box's greatest nearness, or 0 if it is not in the picture; first and last column and row that it may cover."""
     least_x, most_x, least_y, most_y = math.inf, -math.inf, math.inf, -math.inf
     least_z, most_z = math.inf, -math.inf
@@ -367,7 +365,7 @@ def _collect(
         if not everything and not _ball_in_view(cell_balls, cell, view):
             continue
         for k in range(starts[cell], starts[cell + 1]):
-            i = np.int64(members[k])  # of the type that cells have: numba compiles a function for each
+            i = members[k] + 0  # a wide number, as cells are: numba compiles a function once for each type
             if not everything:
                 if not _ball_in_view(balls, i, view):
                     continue
@@ -440,7 +438,7 @@ def draw(
         k = scratch.ordered[turn]
         if not everything and _hidden(canvas, rectangles, k, scratch.nearest[k]):
             continue
-        i = np.int64(scratch.candidates[k])
+        i = scratch.candidates[k] + 0
         prototype = instances.prototypes[i]
         level = 0
         if not everything:

@@ -12,6 +12,7 @@ from reasoned_explorer.rendering.fronts import fronts_of, walls_taken
 from reasoned_explorer.rendering.ground import GroundMap, ground_of
 from reasoned_explorer.rendering.library import Library, linear_from_srgb, pack
 from reasoned_explorer.rendering.mesh import Model
+from reasoned_explorer.rendering.readiness import Progress, begin
 from reasoned_explorer.rendering.standing import stands_of
 from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.taxonomy import CLASS_NAMES
@@ -101,24 +102,30 @@ class Scene:
     classes: NDArray[np.uint8]
 
     @classmethod
-    def of(cls, world: World | Atlas, *, seed: int | None = None) -> "Scene":
-        """Return the scene of a world.
+    def of(cls, world: World | Atlas, *, seed: int | None = None, on_progress: Progress | None = None) -> "Scene":
+        """Return the scene of a world. If need be, the renderer's kernels are compiled meanwhile.
 
         Args:
             world: The world, or an atlas of it.
             seed: Of looks (which of its class's models a thing has, its colour); by default the world's own.
+            on_progress: Told what takes long.
         """
+        begin()
+        tell = on_progress or (lambda _: None)
+        tell("the ground")
         plain = world.world if isinstance(world, Atlas) else world
         looks = plain.seed if seed is None else seed
         first_object = FIRST_BUILDING_ID + len(plain.buildings)
         ground = ground_of(plain)
         things = [Placed(mesh, GROUND_ID, place) for mesh, place in ground.markings]
+        tell("buildings")
         fronts = fronts_of(plain)
         taken = walls_taken(list(fronts.values()))
         for k, (model, place) in enumerate(
             models_of_buildings(plain.buildings, seed=looks, fronts=taken, ways=plain.ways)
         ):
             things.append(Placed(model, FIRST_BUILDING_ID + k, place))
+        tell("things")
         for one in stands_of(plain, fronts, seed=looks):
             place_m = (one.x_m, one.y_m, 0.0)
             things.append(Placed(one.model, first_object + one.item, place_m, one.heading_rad, one.scale, one.tint))

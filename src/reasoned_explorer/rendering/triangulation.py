@@ -76,10 +76,10 @@ def triangulate_all(points: Ints, ring_starts: Ints, polygon_starts: Ints) -> In
     rings = np.diff(polygon_starts)
     corners = np.diff(ring_starts[polygon_starts])
     room = int((corners + 2 * rings).max(initial=0))
-    nodes = np.empty((3, room), np.int64)
-    marks = np.empty((2, room), np.bool_)
+    corner, after, before = np.empty((3, room), np.int64)
+    merged, tried = np.empty((2, room), np.bool_)
     triangles = np.empty((len(points) + 2 * len(ring_starts), 3), np.int64)
-    made = triangulate(points, ring_starts, polygon_starts, *nodes, *marks, triangles)
+    made = triangulate(points, ring_starts, polygon_starts, corner, after, before, merged, tried, triangles)
     return triangles[:made]
 
 

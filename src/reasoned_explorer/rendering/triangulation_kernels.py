@@ -247,7 +247,7 @@ def triangulate(
         tried: Likewise.
         triangles: Set: places in ``points``, counter-clockwise, shape (m, 3).
     """
-    made = np.int64(0)
+    made = ring_starts[0]  # 0, but no constant: numba compiles a function once more for each
     for polygon in range(len(polygon_starts) - 1):
         first, beyond = polygon_starts[polygon], polygon_starts[polygon + 1]
         if first == beyond:
