@@ -5,6 +5,7 @@ import threading
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from reasoned_explorer.world.taxonomy import Ground
 if TYPE_CHECKING:
     from reasoned_explorer.rendering.projection import Projection
     from reasoned_explorer.rendering.renderer import Sighted
+    from reasoned_explorer.rendering.scene import Scene
     from reasoned_explorer.rendering.silhouette_kernels import Sheet
     from reasoned_explorer.simulation.pixel_eyes_kernels import Stage, Tally
     from reasoned_explorer.world.atlas import Atlas
@@ -65,7 +67,7 @@ class PixelEyes:
         self.max_range_m, self.min_px, self.coarseness = float(max_range_m), float(min_px), float(coarseness)
         self._world, self._things = atlas.world, things_of(atlas)
         self._renderer = renderer_of(atlas)
-        self._stage = _stage_of(atlas, self._renderer.scene.instances.ids)
+        self._stage = _stage_of(atlas, self._renderer.scene)
         self._rooms = threading.local()
 
     def look(self, pose: Pose, camera: Camera) -> ViewContent:
@@ -227,16 +229,22 @@ def _coarse(camera: Camera, coarseness: float) -> Camera:
     return replace(camera, width_px=width, height_px=height)
 
 
-def _stage_of(atlas: "Atlas", ids: "np.typing.NDArray[np.int32]") -> "Stage":
+#: Worked out once for each world, by its scene, since many missions share one.
+_STAGES: "WeakKeyDictionary[Scene, Stage]" = WeakKeyDictionary()
+
+
+def _stage_of(atlas: "Atlas", scene: "Scene") -> "Stage":
     from reasoned_explorer.simulation.pixel_eyes_kernels import Stage
 
-    world, raster = atlas.world, atlas.ground
+    if scene in _STAGES:
+        return _STAGES[scene]
+    world, raster, ids = atlas.world, atlas.ground, scene.instances.ids
     first_object = 2 + len(world.buildings)
     stands = np.full(len(world.objects), -1, np.int32)
     drawn = np.flatnonzero(ids >= first_object)
     stands[ids[drawn] - first_object] = drawn
     walls = [item.building + 2 if 0 <= item.building < len(world.buildings) else -1 for item in world.objects]
-    return Stage(
+    _STAGES[scene] = Stage(
         atlas.sight.targets,
         stands,
         np.array(walls, np.int32),
@@ -244,6 +252,7 @@ def _stage_of(atlas: "Atlas", ids: "np.typing.NDArray[np.int32]") -> "Stage":
         np.ascontiguousarray(raster.codes),
         np.array([raster.min_x_m, raster.min_y_m, raster.cell_m]),
     )
+    return _STAGES[scene]
 
 
 def _most_corners(stage: "Stage") -> int:

@@ -24,6 +24,8 @@ _GROUND_ID = 1
 _FIRST_BUILDING_ID = 2
 #: From so many coarse pixels on they are counted as they are.
 _MANY = 6
+#: What has more than this is drawn alone in as much detail as what has so many: its outline needs no more.
+_DETAILED = 48.0
 #: A sample is hidden by what is nearer by more than this: a share of its depth, and metres.
 _NEARER_SHARE, _NEARER_M = 0.01, 0.05
 #: A place stands on the wall of its building, which at a slant seems nearer; of two places on one spot, one is drawn
@@ -171,7 +173,7 @@ def _see_large(
     near = place_on_sheet(library, instances, i, coarse, sheet)
     farthest_m = farthest_on_sheet(library, instances, i, sheet)
     if near > 0.0 and not _is_free(depth, ids, sheet.rectangle, own, farthest_m):
-        draw_on_sheet(library, instances, i, coarse, density, sheet)
+        draw_on_sheet(library, instances, i, coarse, density * min(1.0, _DETAILED / count), sheet)
         rectangle, owners = sheet.rectangle, sheet.canvas.owners
         for y in range(rectangle[0, 2], rectangle[0, 3] + 1):
             for x in range(rectangle[0, 0], rectangle[0, 1] + 1):
