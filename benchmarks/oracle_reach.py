@@ -38,6 +38,8 @@ def main() -> None:
     parser.add_argument("--step-max", type=float, default=9.0, help="longest step, metres")
     parser.add_argument("--vehicle", default="drone")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--eyes", default="lines", help="what captions go by: lines or pixels")
+    parser.add_argument("--worlds", default="", help="only worlds whose names have this in them")
     options = parser.parse_args()
 
     sweep_rad = math.radians(120.0) if options.views <= 3 else 2.0 * math.pi
@@ -48,6 +50,7 @@ def main() -> None:
     sampling = SamplingSettings(camera_height_m=profile.camera_height_m, max_m=400.0)
     worlds: list[tuple[str, tuple[float, float, float, float] | None]] = [(name, None) for name in GENERATED]
     worlds += [(str(REAL / name), box) for name, box in BOXES.items() if (REAL / name).exists()]
+    worlds = [(name, box) for name, box in worlds if options.worlds in name]
     found: dict[int, int] = {}
     tried: dict[int, int] = {}
     for name, box in worlds:
@@ -63,7 +66,12 @@ def main() -> None:
         started_s, here = time.perf_counter(), 0
         for episode in episodes:
             settings = MissionSettings(
-                minds="oracle", captioner="perfect", vehicle=options.vehicle, explorer=explorer, seed=episode.seed
+                minds="oracle",
+                captioner="perfect",
+                eyes=options.eyes,
+                vehicle=options.vehicle,
+                explorer=explorer,
+                seed=episode.seed,
             )
             summary = Mission(episode.spec.text, atlas, settings, start=episode.start).run().summary
             level = episode.spec.level

@@ -1,6 +1,7 @@
 """What can be asked of a mesh: its parts, whether they are closed, which way they face, what holds them up."""
 
 import numpy as np
+import shapely
 
 from reasoned_explorer.rendering.mesh import Mesh
 
@@ -117,3 +118,40 @@ def seen_from(mesh: Mesh, heading_rad: float, *, samples: int = 8000, cells: int
     order = np.lexsort([-(points @ view), keys])
     first = np.concatenate([[True], np.diff(keys[order]) != 0])
     return place[order[first]]
+
+
+def fighting(mesh: Mesh, *, apart_m: float = 0.002, least_m2: float = 1e-4):
+    """Return pairs of triangles of different looks that face one way, overlap and lie nearly in one plane, (n, 2).
+
+    Args:
+        mesh: Any.
+        apart_m: Planes nearer to each other than this are one.
+        least_m2: Smaller overlaps do not count.
+    """
+    normals, areas = faces(mesh)
+    corners = mesh.vertices[mesh.triangles].astype(np.float64)
+    found = [np.empty((0, 2), np.int64)]
+    big = np.flatnonzero(areas > least_m2)
+    keys = np.round(normals[big] * 200.0).astype(np.int64)
+    _, group = np.unique(keys, axis=0, return_inverse=True)
+    group = group.reshape(-1)
+    order = np.argsort(group, kind="stable")
+    for members in np.split(big[order], np.flatnonzero(np.diff(group[order])) + 1):
+        if len(members) < 2:
+            continue
+        normal = normals[members[0]]
+        across = np.cross(normal, (1.0, 0.0, 0.0) if abs(normal[0]) < 0.8 else (0.0, 1.0, 0.0))
+        across /= np.linalg.norm(across)
+        flat = np.stack([corners[members] @ across, corners[members] @ np.cross(normal, across)], axis=-1)
+        high = (corners[members] @ normal).mean(axis=1)
+        shapes = shapely.polygons(flat)
+        one, other = shapely.STRtree(shapes).query(shapes)
+        a, b = members[one], members[other]
+        looks = (mesh.materials[a] != mesh.materials[b]) | (
+            np.abs(mesh.colours[a] - mesh.colours[b]).max(axis=1) > 0.02
+        )
+        near = (one < other) & (np.abs(high[one] - high[other]) < apart_m) & looks
+        one, other = one[near], other[near]
+        real = shapely.area(shapely.intersection(shapes[one], shapes[other])) > least_m2
+        found.append(np.column_stack([members[one[real]], members[other[real]]]))
+    return np.concatenate(found)

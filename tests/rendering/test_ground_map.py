@@ -2,12 +2,20 @@
 
 import numpy as np
 
-from reasoned_explorer.rendering.ground_map import GROUND_LOOKS, ground_colours, ground_map_of, ground_materials
+from reasoned_explorer.rendering.ground_map import (
+    GROUND_LOOKS,
+    GUESSED_GREEN,
+    GUESSED_PAVED,
+    LOOKS,
+    ground_colours,
+    ground_map_of,
+    ground_materials,
+)
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.world.generator import generate_world
 from reasoned_explorer.world.raster import GroundRaster
 from reasoned_explorer.world.taxonomy import Ground
-from reasoned_explorer.world.world import Building, Way
+from reasoned_explorer.world.world import Bounds, Building, Way, World
 from tests.world.worlds import box, field
 
 ROAD = Way("residential", Ground.ROAD, np.array([(0.0, 50.0), (100.0, 50.0)]), 8.0)
@@ -16,8 +24,8 @@ WALK = Way("footway", Ground.PAVEMENT, np.array([(40.0, 0.0), (40.0, 100.0)]), 3
 
 def test_every_kind_of_ground_has_a_look() -> None:
     assert set(GROUND_LOOKS) == set(Ground)
-    assert ground_materials().shape == (len(Ground),)
-    assert ground_colours().shape == (len(Ground), 3)
+    assert ground_materials().shape == (len(LOOKS),)
+    assert ground_colours().shape == (len(LOOKS), 3)
     assert ground_colours().min() > 0.0
     assert ground_colours().max() <= 1.0
     assert ground_materials()[Ground.WATER] == Material.WATER
@@ -73,3 +81,16 @@ def test_buildings_stand_on_the_ground_and_are_none() -> None:
 def test_large_worlds_get_larger_cells() -> None:
     drawn = ground_map_of(field(size_m=4000.0))
     assert 0.25 < drawn.cell_m < 0.5
+
+
+def test_unknown_ground_is_paved_among_houses_and_green_elsewhere() -> None:
+    houses = tuple(
+        Building(outer=box(x, y, x + 16, y + 16), height_m=9.0) for x in range(0, 80, 20) for y in range(0, 80, 20)
+    )
+    world = World("test", Bounds(0, 0, 300, 80), (), (), houses, ())
+    codes = ground_map_of(world).codes
+    assert set(np.unique(codes)) == {GUESSED_PAVED, GUESSED_GREEN}
+    assert (codes[:, : 4 * 50] == GUESSED_PAVED).all()
+    assert (codes[:, 4 * 150 :] == GUESSED_GREEN).all()
+    # One border, and it does not go back and forth.
+    assert (np.diff((codes == GUESSED_GREEN).astype(int), axis=1) >= 0).all()

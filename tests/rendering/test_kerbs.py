@@ -59,9 +59,11 @@ def test_water_has_quays_on_paving_and_banks_in_the_green() -> None:
         field(ground=Ground.PLAZA, regions=[pond]), ground_map_of(field(ground=Ground.PLAZA, regions=[pond]))
     )
     green = shores(field(regions=[pond]), ground_map_of(field(regions=[pond])))
-    assert [len(part.corners) > 0 for part in paved] == [True, True, True, False]
-    assert [len(part.corners) > 0 for part in green] == [False, False, False, True]
+    assert [len(part.corners) > 0 for part in paved] == [True, True, True, False, False]
+    assert [len(part.corners) > 0 for part in green] == [False, False, False, True, False]
     assert max(part.corners[..., 2].max() for part in paved[:3]) < 0.2
+    beach = field(ground=Ground.SAND, regions=[pond])
+    assert [len(part.corners) > 0 for part in shores(beach, ground_map_of(beach))] == [False] * 4 + [True]
 
 
 def test_no_water_has_no_shores_and_no_roads_have_no_kerbs() -> None:

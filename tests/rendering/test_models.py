@@ -12,7 +12,17 @@ from reasoned_explorer.rendering.material import TINTED, Material
 from reasoned_explorer.rendering.models import model_of, natural_size_m, tints_of, variants_of
 from reasoned_explorer.rendering.models.catalogue import _MAKERS
 from reasoned_explorer.world.taxonomy import OBJECT_CLASSES
-from tests.rendering.meshes import faces, floating, is_backed, is_closed, parts, seen_from, signed_volume, welded
+from tests.rendering.meshes import (
+    faces,
+    fighting,
+    floating,
+    is_backed,
+    is_closed,
+    parts,
+    seen_from,
+    signed_volume,
+    welded,
+)
 
 EVERY = [(name, variant) for name in OBJECT_CLASSES for variant in range(variants_of(name))]
 EVERY_LEVEL = [(name, variant, level) for name, variant in EVERY for level in range(4)]
@@ -183,3 +193,20 @@ def test_the_same_bytes_in_every_process():
     command = "from tests.rendering.test_models import digest; print(digest())"
     other = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, check=True)
     assert other.stdout.strip() == digest()
+
+
+#: What is smaller than a hand's palm and crosses another part in one plane is not seen to.
+_PALM_M2 = 0.002
+
+
+@pytest.mark.parametrize(("name", "variant"), EVERY)
+def test_no_two_colours_lie_in_one_plane(name, variant):
+    for mesh in model_of(name, variant).levels[:2]:
+        normals, _ = faces(mesh)
+        corners = mesh.vertices[mesh.triangles]
+        # Nobody sees undersides, nor backs of fronts, which are on walls.
+        hidden = normals[:, 2] < -0.9
+        if OBJECT_CLASSES[name].kind == "place":
+            hidden |= (normals[:, 1] < -0.9) & (corners[..., 1].max(axis=1) < 0.3)
+        pairs = fighting(mesh, least_m2=_PALM_M2)
+        assert not len(pairs[~hidden[pairs[:, 0]]])

@@ -12,7 +12,7 @@ from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Camera, SettingsError
 from reasoned_explorer.simulation import eyes_kernels
 from reasoned_explorer.simulation.eyes import Eyes
-from reasoned_explorer.simulation.eyes_kernels import _window, see_objects
+from reasoned_explorer.simulation.eyes_kernels import _window, in_view, see_objects
 from reasoned_explorer.world.raster import GroundRaster
 from reasoned_explorer.world.sight import SightLines
 from reasoned_explorer.world.taxonomy import OBJECT_CLASSES, Ground
@@ -91,6 +91,7 @@ def test_a_view_reaches_into_cells_of_the_grid_only(x, y, heading):
 @pytest.mark.parametrize(("x", "y"), [(95, 0), (-95, 0), (0, 95), (0, -95), (95, 95), (-95, -95)])
 def test_looking_from_outside_of_all_that_stands_reads_nothing_that_is_not_there(x, y, heading, monkeypatch):
     # As plain Python, where an index that is out of range is an error.
+    monkeypatch.setattr("reasoned_explorer.simulation.eyes_kernels.in_view", in_view.py_func)
     monkeypatch.setattr("reasoned_explorer.simulation.eyes_kernels.see_objects", see_objects.py_func)
     view = look(("bench", -2, 0), ("bench", 2, 0), x=x, y=y, heading=heading, max_range_m=60.0)
     assert view.sightings == ()
@@ -209,5 +210,6 @@ def test_settings_out_of_range_are_refused_together():
 @pytest.mark.parametrize(("x", "y", "heading"), [(90, 0, EAST), (-90, 0, -EAST), (0, 90, NORTH), (0, -90, SOUTH)])
 def test_who_looks_away_from_all_there_is_sees_nothing(x, y, heading, monkeypatch):
     # As plain Python, which refuses what compiled code reads from beyond the grid.
+    monkeypatch.setattr(eyes_kernels, "in_view", eyes_kernels.in_view.py_func)
     monkeypatch.setattr(eyes_kernels, "see_objects", eyes_kernels.see_objects.py_func)
     assert look(("bench", 0, 0), ("bench", 5, 5), x=x, y=y, heading=heading).sightings == ()

@@ -89,6 +89,16 @@ def shortened(text: str) -> str:
     return line if len(line) <= _SHOWN else line[: _SHOWN - 1] + "…"
 
 
+def fault_of_body(error: ValidationError, body: bytes) -> str:
+    """Return why the body of an answer cannot be read: it is ``malformed``, or of ``wrong types``."""
+    first = error.errors(include_url=False)[0]
+    if first["type"] == "json_invalid":
+        start = shortened(body[:200].decode("utf-8", "replace"))
+        return f"malformed: the answer is no JSON: {start!r}"
+    where = ".".join(map(str, first["loc"])) or "the whole"
+    return f"wrong types: {where}: {first['msg']}"
+
+
 def words_of_error(body: object) -> str:
     """Return what a server says of an error, or nothing where it says nothing.
 
@@ -187,12 +197,7 @@ def read_completion(body: bytes, *, wants_structure: bool = False) -> Reading:
     try:
         completion = _Completion.model_validate_json(body)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        if first["type"] == "json_invalid":
-            start = shortened(body[:200].decode("utf-8", "replace"))
-            return spent(fault=f"malformed: the answer is no JSON: {start!r}", again=True)
-        where = ".".join(map(str, first["loc"])) or "the whole"
-        return spent(fault=f"wrong types: {where}: {first['msg']}", again=True)
+        return spent(fault=fault_of_body(error, body), again=True)
     name = completion.model if isinstance(completion.model, str) else ""
     if not completion.choices:
         return spent(fault="wrong types: choices: there is none", again=True, model=name)

@@ -13,7 +13,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from reasoned_explorer.calls.chat import ChatRequest, DecisionQuestion, TokenChoice
-from reasoned_explorer.calls.completion import Reading, data_url, shortened
+from reasoned_explorer.calls.completion import Reading, data_url, fault_of_body
 
 #: Probabilities of the levels may add up to 1 but for so much.
 _ROUNDING = 0.02
@@ -96,12 +96,7 @@ def read_decision(body: bytes, questions: Sequence[DecisionQuestion]) -> Reading
     try:
         decision = _Decision.model_validate_json(body)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        if first["type"] == "json_invalid":
-            start = shortened(body[:200].decode("utf-8", "replace"))
-            return spent(fault=f"malformed: the answer is no JSON: {start!r}", again=True)
-        where = ".".join(map(str, first["loc"])) or "the whole"
-        return spent(fault=f"wrong types: {where}: {first['msg']}", again=True)
+        return spent(fault=fault_of_body(error, body), again=True)
     name = decision.model if isinstance(decision.model, str) else ""
     if len(decision.answers) != len(questions):
         what = f"{len(decision.answers)} answers to {len(questions)} questions"

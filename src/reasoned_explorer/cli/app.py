@@ -105,6 +105,9 @@ def run(
     images: Annotated[bool, typer.Option("--images/--no-images", help="Keep the pictures of all views, PNG.")] = False,
     picture_px: Annotated[int, typer.Option(help="Side of a picture, pixels.")] = 448,
     conditions: Annotated[str, typer.Option(help="In pictures: clear, overcast, dusk, fog or rain.")] = "clear",
+    eyes: Annotated[
+        str, typer.Option(help="What simulated captioners go by: lines or pixels; see rex names.")
+    ] = "lines",
     yes: Yes = False,
     map_: Annotated[bool, typer.Option("--map/--no-map", help="Draw the map picture.")] = True,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the summary.")] = False,
@@ -144,6 +147,7 @@ def run(
             images=images,
             picture_px=picture_px,
             conditions=conditions,
+            eyes=eyes,
             quiet=quiet,
             models=ModelOptions(
                 base_url=base_url,
@@ -177,7 +181,7 @@ def show(
 @app.command()
 @answering
 def names() -> None:
-    """List what can be picked by name: planners, minds, captioners, vehicles, worlds, latency profiles."""
+    """List what can be picked by name: planners, minds, captioners, eyes, vehicles, worlds, latency profiles."""
     from reasoned_explorer.cli.names import print_names
 
     print_names()

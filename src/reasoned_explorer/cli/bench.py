@@ -1,4 +1,4 @@
-"""``rex bench``, ``rex compare``, ``rex export``: many missions, and what comes of them."""
+"""``rex bench``: many missions, and the tables that come of them."""
 
 import os
 import shlex
@@ -21,7 +21,6 @@ from reasoned_explorer.cli.model_lines import lines_of_forecast
 from reasoned_explorer.cli.models import ModelOptions
 from reasoned_explorer.cli.parsing import parse_bbox, parse_levels, parse_planners, parse_seeds
 from reasoned_explorer.cli.sheets import print_sheet
-from reasoned_explorer.evaluation.bench.export import export
 from reasoned_explorer.evaluation.bench.notes import Notes, notes_of
 from reasoned_explorer.evaluation.bench.plan import BenchPlan, longer
 from reasoned_explorer.evaluation.bench.ray_pool import check_address, joined, require_ray
@@ -31,7 +30,6 @@ from reasoned_explorer.evaluation.bench.store import NOTHING_FINISHED, RunStore
 from reasoned_explorer.evaluation.bench.tables import (
     Sheet,
     city_sheet,
-    compared_sheet,
     difference_sheet,
     headroom_sheet,
     main_sheet,
@@ -83,6 +81,7 @@ class BenchOptions:
     captioner: str = "noisy"
     picture_px: int = 448
     conditions: str = "clear"
+    eyes: str = "lines"
     vehicle: str = "drone"
     latency: str = "gpt-2023"
     clock: str | None = None
@@ -278,6 +277,7 @@ def _plan(options: BenchOptions, names: Sequence[str], wrong: Sequence[InputErro
         captioner=options.captioner,
         picture_px=options.picture_px,
         conditions=options.conditions,
+        eyes=options.eyes,
         latency=options.latency,
         explorer=explorer,
         success_radius_m=options.radius_m,
@@ -424,49 +424,3 @@ def sheets_of(store: RunStore) -> list[Sheet]:
         always = dict.fromkeys(line for results in by_vehicle.values() for line in notes_on(results, plan).always)
         sheets.append(vehicles_sheet(by_vehicle, notes=tuple(always)))
     return [*sheets, *paper_sheets(("I", "II") if len(by_vehicle) > 1 else ("I",))]
-
-
-def compare_runs(first: str, second: str) -> None:
-    """Print paired differences between two runs, or two methods of runs, on the missions that both have."""
-    (one, one_method), (other, other_method) = _run_and_method(first), _run_and_method(second)
-    with RunStore.read(one) as ours, RunStore.read(other) as theirs:
-        plan, their_plan = ours.plan, theirs.plan
-        vehicles = [name for name in plan.vehicles if name in their_plan.vehicles]
-        if not vehicles:
-            said = f"{first} has {', '.join(plan.vehicles)}, {second} has {', '.join(their_plan.vehicles)}"
-            raise InputError("comparison", [Fault(said, "runs with a vehicle in common")])
-        mine, its = plan.fingerprints(), their_plan.fingerprints()
-        same = {name for name, print_ in mine.items() if its.get(name) == print_}
-        if not same:
-            said = f"{first} is of {plan.split.label}, {second} of {their_plan.split.label}"
-            expected = "runs of the same missions: worlds, goals, starts, seeds and limits"
-            raise InputError("comparison", [Fault(f"no mission in common: {said}", expected)])
-        notes = [f"Set differently: {line}." for line in plan.differences(their_plan)]
-        # All are made before one is printed: a fault of the last must not stand under half an answer.
-        sheets = [
-            compared_sheet(
-                results_of(ours, plan, vehicle).of_missions(same),
-                results_of(theirs, their_plan, vehicle).of_missions(same),
-                names=(first, second),
-                methods=(one_method, other_method),
-                title=vehicle,
-                notes=notes,
-            )
-            for vehicle in vehicles
-        ]
-    console = Output()
-    for sheet in sheets:
-        print_sheet(console, sheet)
-
-
-def _run_and_method(text: str) -> tuple[Path, str | None]:
-    """Return the run and the method that ``RUN`` or ``RUN::METHOD`` means."""
-    folder, _, name = text.partition("::")
-    return Path(folder), name or None
-
-
-def export_run(run: Path, path: Path) -> None:
-    """Write a run's results into a CSV or Parquet file."""
-    with RunStore.read(run) as store:
-        count = export(store, path)
-    Output().print(f"{count} missions in {path}", markup=False, soft_wrap=True)

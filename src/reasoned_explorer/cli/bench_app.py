@@ -105,6 +105,9 @@ def bench(
     captioner: Annotated[str, typer.Option(help="Who says what is seen; see rex names.")] = "noisy",
     picture_px: Annotated[int, typer.Option(help="Side of the pictures that a model is shown, pixels.")] = 448,
     conditions: Annotated[str, typer.Option(help="In pictures: clear, overcast, dusk, fog or rain.")] = "clear",
+    eyes: Annotated[
+        str, typer.Option(help="What simulated captioners go by: lines or pixels; see rex names.")
+    ] = "lines",
     yes: Yes = False,
     vehicle: Annotated[str, typer.Option(help="Vehicle profiles with commas; each has a table of its own.")] = "drone",
     latency: Annotated[str, typer.Option(help="How long modelled calls take; see rex names.")] = "gpt-2023",
@@ -161,6 +164,7 @@ def bench(
             captioner=captioner,
             picture_px=picture_px,
             conditions=conditions,
+            eyes=eyes,
             vehicle=vehicle,
             latency=latency,
             clock=clock,
@@ -192,7 +196,7 @@ def compare(
     second: Annotated[str, typer.Argument(metavar="B", help="Another run, or RUN::PLANNER (the run may be the same).")],
 ) -> None:
     """Compare two runs: paired differences with intervals on the missions that both have."""
-    from reasoned_explorer.cli.bench import compare_runs
+    from reasoned_explorer.cli.compare import compare_runs
 
     compare_runs(first, second)
 
@@ -203,7 +207,7 @@ def export_(
     path: Annotated[Path, typer.Argument(metavar="FILE", help="results.csv or results.parquet")],
 ) -> None:
     """Write every mission of a run into a CSV or Parquet file."""
-    from reasoned_explorer.cli.bench import export_run
+    from reasoned_explorer.cli.compare import export_run
 
     export_run(run, path)
 

@@ -33,7 +33,7 @@ class Part:
 
 PARTS = (
     Part("numpy", "numpy", "arrays"),
-    Part("numba", "numba", "sight lines, rasters, shortest ways and motion at machine speed"),
+    Part("numba", "numba", "sight lines, pictures, rasters, shortest ways and motion at machine speed"),
     Part("shapely", "shapely", "polygons"),
     Part("osmium", "osmium", "OpenStreetMap files"),
     Part("pymap3d", "pymap3d", "geodetic frames"),
@@ -121,7 +121,7 @@ def print_report() -> None:
         missing_core += part.core
         say(f"  {'MISSING' if part.core else 'optional'}  {part.package}: {part.purpose}; get it with: {part.command}")
     say(_minds_line())
-    say("not there yet: pictures, AirSim, MAVLink, Unitree, ROS 2, the web page")
+    say("not there yet: AirSim, MAVLink, Unitree, ROS 2, the web page")
     if missing_core:
         say(f"{missing_core} needed packages are missing")
 

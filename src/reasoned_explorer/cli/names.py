@@ -4,6 +4,7 @@ from rich.console import Console
 
 from reasoned_explorer.cli.console import Output
 from reasoned_explorer.evaluation.methods import GROUPS, PLANNER_METHODS
+from reasoned_explorer.evaluation.mission_settings import EYES
 from reasoned_explorer.minds import LATENCY_PROFILES, latency_profile
 from reasoned_explorer.minds.registry import MINDS
 from reasoned_explorer.perception.registry import CAPTIONERS
@@ -59,6 +60,7 @@ def print_names() -> None:
             _print(console, "groups of rex bench --planners", groups)
         if registry is MINDS:
             _print(console, "models as minds", _MODEL_FORMS)
+    _print(console, "eyes", tuple(Entry(name, "", summary) for name, summary in EYES.items()))
     districts = tuple(Entry(name, "", summary) for name, summary in DISTRICTS.items())
     _print(console, "worlds", (*districts, *WORLDS.entries(), *_WORLD_FORMS))
     _print(

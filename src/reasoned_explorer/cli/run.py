@@ -62,6 +62,7 @@ class RunOptions:
     images: bool
     picture_px: int
     conditions: str
+    eyes: str
     quiet: bool
     models: ModelOptions
 
@@ -88,6 +89,7 @@ class RunOptions:
             seed=self.seed,
             picture_px=self.picture_px,
             conditions=self.conditions,
+            eyes=self.eyes,
         )
         # Models that are called take real seconds.
         settings = replace(settings, clock=self.clock or ("mixed" if models_of(settings) else "virtual"))

@@ -14,7 +14,7 @@ from reasoned_explorer.calls.caller import Caller, end_of
 from reasoned_explorer.calls.chat import is_model_name
 from reasoned_explorer.calls.ledger import CallRecord, Ledger
 from reasoned_explorer.evaluation.guide import GUIDE_LABEL, Guide
-from reasoned_explorer.evaluation.mission_settings import CLOCKS, errors_of, with_overrides
+from reasoned_explorer.evaluation.mission_settings import CLOCKS, THROUGH_PIXELS, errors_of, with_overrides
 from reasoned_explorer.evaluation.mission_settings import MissionSettings as MissionSettings  # noqa: PLC0414 - is had from here, too
 from reasoned_explorer.evaluation.model_desk import ModelDesk
 from reasoned_explorer.evaluation.picture_folder import KeepingCaptioner
@@ -48,6 +48,7 @@ from reasoned_explorer.perception.registry import CAPTIONERS
 from reasoned_explorer.planning.registry import make_planner
 from reasoned_explorer.simulation.eyes import Eyes
 from reasoned_explorer.simulation.painter import Painter
+from reasoned_explorer.simulation.pixel_eyes import PixelEyes
 from reasoned_explorer.simulation.vehicle import SimulatedVehicle, check_on_map, check_start
 from reasoned_explorer.task.goal_spec import GoalSpec
 from reasoned_explorer.task.judge import Judge, TrackReport
@@ -282,7 +283,8 @@ class Mission:
         if self._pictures is not None:
             captioner = KeepingCaptioner(captioner, self._pictures)
         planner = make_planner(settings.planner, minds, settings.planner_settings)
-        self._labels = (planner.label, minds.label, captioner.label)
+        through = THROUGH_PIXELS if settings.eyes == "pixels" and not is_model_name(settings.captioner) else ""
+        self._labels = (planner.label, minds.label, captioner.label + through)
         explorer = with_overrides(settings.explorer, planner)
         self.settings = replace(settings, explorer=explorer)
         vehicle, must_end = self._vehicle(), end_of(callers)
@@ -298,7 +300,7 @@ class Mission:
             self.profile,
             self.start,
             clock=self.clock,
-            eyes=Eyes(self.atlas),
+            eyes=PixelEyes(self.atlas) if settings.eyes == "pixels" else Eyes(self.atlas),
             painter=painter,
             seed=settings.seed,
         )

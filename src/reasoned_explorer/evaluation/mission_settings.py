@@ -23,6 +23,13 @@ from reasoned_explorer.vehicles.registry import vehicle_profile
 CLOCKS: Mapping[str, Callable[[], Clock]] = {"virtual": VirtualClock, "mixed": MixedClock, "real": RealClock}
 #: Who carries a mission out: the method's agent, or the bound that knows the shortest compliant way.
 AGENTS = ("explorer", "guide")
+#: What the simulator's eyes go by, and what that means.
+EYES: Mapping[str, str] = {
+    "lines": "sight lines between outlines and heights",
+    "pixels": "what has pixels in a picture of the view is seen",
+}
+#: Behind the label of a captioner whose eyes go by pixels.
+THROUGH_PIXELS = " through pixels"
 _MIND_ROLES = ("minds", "visionary", "evaluator", "checker")
 
 
@@ -48,6 +55,7 @@ class MissionSettings:
         agent: One of `AGENTS`; the guide asks no planner, mind or captioner.
         picture_px: Side of the pictures that are taken, pixels, in [16, 4096].
         conditions: Time of day and weather in them: ``clear``, ``overcast``, ``dusk``, ``fog`` or ``rain``.
+        eyes: One of `EYES`: what simulated captioners know to be in a view.
 
     A planner may bring settings of the agent with it (`planning.Planner`); a mission's own ``settings`` are those that
     are in force. Names and numbers are checked by whoever uses them, together with the rest of its input (`errors_of`).
@@ -69,6 +77,7 @@ class MissionSettings:
     agent: str = "explorer"
     picture_px: int = 448
     conditions: str = "clear"
+    eyes: str = "lines"
 
 
 def errors_of(settings: MissionSettings) -> tuple[InputError, ...]:
@@ -123,7 +132,7 @@ def _typed(settings: MissionSettings) -> list[tuple[str, Any, str, Callable[[Any
     def is_number(value: Any) -> bool:
         return isinstance(value, int | float) and not isinstance(value, bool)
 
-    names = ("planner", "minds", "captioner", "vehicle", "latency", "clock", "agent")
+    names = ("planner", "minds", "captioner", "vehicle", "latency", "clock", "agent", "eyes")
     roles = ("visionary", "evaluator", "checker")
     rows: list[tuple[str, Any, str, Callable[[Any], bool]]] = [
         (name, getattr(settings, name), "a name", is_name) for name in names
@@ -153,6 +162,7 @@ def _name_checks(settings: MissionSettings) -> list[tuple[str, Callable[[], obje
         ("latency", partial(latency_profile, settings.latency)),
         ("clock", partial(_check_listed, "clock", settings.clock, tuple(CLOCKS))),
         ("agent", partial(_check_listed, "agent", settings.agent, AGENTS)),
+        ("eyes", partial(_check_listed, "eyes", settings.eyes, tuple(EYES))),
     ]
 
 

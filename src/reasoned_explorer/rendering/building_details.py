@@ -5,6 +5,7 @@ import numpy as np
 from reasoned_explorer.rendering.building_roofs import PARAPET_M, RoofKind, Roofs
 from reasoned_explorer.rendering.building_styles import Family, Styles, mixed_draw
 from reasoned_explorer.rendering.footprints import Floats, Footprints, Ints
+from reasoned_explorer.rendering.fronts import clear_of
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.patches import Patch, boxes, lifted, quads, rectangle_uvs
 from reasoned_explorer.rendering.wall_spots import Spots, runs
@@ -14,6 +15,8 @@ _DORMER_M = (1.5, 1.5)
 #: How far a dormer's front stands back from the wall below it, metres.
 _DORMER_BACK_M = 0.3
 _BALCONY_M = (2.5, 1.1)
+#: Fronts of places reach no higher than this, metres; a church's has no balconies above it.
+_HIGHEST_FRONT_M = 5.3
 _CHIMNEY, _POST = np.array((0.62, 0.38, 0.31)), np.array((0.45, 0.46, 0.48))
 
 
@@ -53,8 +56,11 @@ def dormers(prints: Footprints, styles: Styles, roofs: Roofs) -> list[Patch]:
     return [box, window]
 
 
-def balconies(prints: Footprints, styles: Styles, roofs: Roofs) -> list[Patch]:
-    """Return balconies on some walls of blocks of flats: before every third bay, on every storey but the lowest."""
+def balconies(prints: Footprints, styles: Styles, roofs: Roofs, fronts: Floats) -> list[Patch]:
+    """Return balconies on some walls of blocks of flats: before every third bay, on every storey but the lowest.
+
+    There are none right above fronts of places, shape (n, 3) as `reasoned_explorer.rendering.fronts.clear_of` has it.
+    """
     wanted = (styles.family == Family.FLATS) & (styles.draw(31) < 0.45) & (roofs.eaves_m > 8.0) & (styles.base_m < 0.5)
     chosen = mixed_draw(styles.keys[prints.owners] + prints.places.astype(np.uint64), 32) < 0.6
     edges = np.flatnonzero(wanted[prints.owners] & ~prints.in_court & (prints.lengths >= 8.0) & chosen)
@@ -68,8 +74,10 @@ def balconies(prints: Footprints, styles: Styles, roofs: Roofs) -> list[Patch]:
     distance = (1.5 + 3.0 * column) * (prints.lengths[edges] / bays)[row]
     floor = low[row] + storey * ((roofs.eaves_m[owner] - low) / storeys)[row]
     keep = (floor > 3.0) & (distance + _BALCONY_M[0] / 2.0 < prints.lengths[edges][row])
-    spots = Spots.on(prints, edges[row][keep], distance[keep])
-    return _balcony_faces(spots, floor[keep], styles.trim_colour[spots.owners] * 0.88)
+    spots, floor = Spots.on(prints, edges[row][keep], distance[keep]), floor[keep]
+    clear = (floor > _HIGHEST_FRONT_M) | clear_of(spots.places, fronts, _BALCONY_M[0] / 2.0)
+    spots, floor = spots.where(clear), floor[clear]
+    return _balcony_faces(spots, floor, styles.trim_colour[spots.owners] * 0.88)
 
 
 def _balcony_faces(spots: Spots, floor: Floats, colours: Floats) -> list[Patch]:

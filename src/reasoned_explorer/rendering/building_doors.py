@@ -4,23 +4,51 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 
 from reasoned_explorer.rendering.building_roofs import Roofs
 from reasoned_explorer.rendering.building_styles import Family, Styles
+from reasoned_explorer.rendering.crossings import segments_of
 from reasoned_explorer.rendering.footprints import Bools, Floats, Footprints, Ints
+from reasoned_explorer.rendering.fronts import NO_FRONTS, clear_of
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.patches import Patch, boxes
 from reasoned_explorer.rendering.wall_spots import Finish, Spots, panels, runs
-from reasoned_explorer.world.world import Building
+from reasoned_explorer.world.world import Building, Way
 
 #: An entrance farther than this from its building's walls is none of theirs, metres.
 _FAR_M = 1.5
+#: Doors nearer to each other than this would overlap; this clear of a place's front, metres.
+_APART_M, _BESIDE_FRONT_M = 2.6, 0.8
+#: Of a building without known entrances: how many of its longest walls may have the door, at least how long, and how
+#: much of what lies before them must be open, metres.
+_WALLS_TRIED, _LEAST_WALL_M, _OPEN_M = 6, 2.0, 0.9
+#: A way farther off than this draws no door, metres.
+_FARTHEST_WAY_M = 60.0
 _STEP = np.array((0.66, 0.65, 0.62))
 _PANE, _HANDLE = np.array((0.24, 0.30, 0.36)), np.array((0.80, 0.77, 0.70))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Doors:
+class Surroundings:
+    """What stands and runs around buildings.
+
+    Attributes:
+        fronts: Stretches of walls with fronts of places (`reasoned_explorer.rendering.fronts.walls_taken`), shape
+            (n, 3). Nothing else is drawn there.
+        ways: Doors that no map knows lead out to them.
+    """
+
+    fronts: Floats
+    ways: Sequence[Way]
+
+
+#: Of a building that stands alone.
+NOTHING_AROUND = Surroundings(NO_FRONTS, ())
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Doors:
     """Doors: where, how large, and whether they are of a house that many people enter."""
 
     spots: Spots
@@ -31,31 +59,32 @@ class _Doors:
     sheltered: Bools
 
 
-def doors(
-    buildings: Sequence[Building], prints: Footprints, styles: Styles, roofs: Roofs, *, fine: bool
-) -> list[Patch]:
-    """Return a door at every entrance, and one where none is known; ``fine``: with frames, panes and a step."""
-    found = _doors_of(buildings, prints, styles, roofs)
-    leaf = Finish(styles.door_colour[found.spots.owners], int(Material.WOOD))
-    leaves = panels(found.spots.moved(out_m=0.07), leaf, wide_m=found.wide_m, low_m=0.0, high_m=found.high_m)
-    return [leaves, *_frames(found, styles), *_fittings(found)] if fine else [leaves]
-
-
-def _doors_of(buildings: Sequence[Building], prints: Footprints, styles: Styles, roofs: Roofs) -> _Doors:
-    edges, distances = _door_places(buildings, prints)
+def doors_of(
+    buildings: Sequence[Building], prints: Footprints, styles: Styles, roofs: Roofs, around: Surroundings
+) -> Doors:
+    """Find the doors of buildings: one at every entrance that no place's front takes, and one where none is known."""
+    edges, distances = _door_places(buildings, prints, around)
     spots = Spots.on(prints, edges, distances)
     wall = (roofs.eaves_m - styles.base_m)[spots.owners]
     stands = (styles.base_m[spots.owners] < 0.5) & (wall > 2.1) & (styles.family[spots.owners] != Family.CANOPY)
+    stands &= clear_of(spots.places, around.fronts, _BESIDE_FRONT_M)
     spots, wall, edges = spots.where(stands), wall[stands], edges[stands]
     family = styles.family[spots.owners]
     grand = np.isin(family, [Family.OFFICE, Family.CHURCH, Family.SHOP, Family.HALL])
     wide = np.minimum(np.where(grand, 1.9, 1.15), 0.85 * prints.lengths[edges])
     high = np.minimum(np.select([family == Family.CHURCH, grand], [3.1, 2.5], 2.15), wall - 0.1)
     sheltered = (~grand | (family == Family.OFFICE)) & (high + 0.5 < wall)
-    return _Doors(spots, wide, high, wall, grand, sheltered)
+    return Doors(spots, wide, high, wall, grand, sheltered)
 
 
-def _frames(found: _Doors, styles: Styles) -> list[Patch]:
+def doors(found: Doors, styles: Styles, *, fine: bool) -> list[Patch]:
+    """Return what doors look like; ``fine``: with frames, panes and a step."""
+    leaf = Finish(styles.door_colour[found.spots.owners], int(Material.WOOD))
+    leaves = panels(found.spots.moved(out_m=0.07), leaf, wide_m=found.wide_m, low_m=0.0, high_m=found.high_m)
+    return [leaves, *_frames(found, styles), *_fittings(found)] if fine else [leaves]
+
+
+def _frames(found: Doors, styles: Styles) -> list[Patch]:
     """Return jambs and a lintel around each door, and a small roof above some."""
     trim = styles.trim_colour[found.spots.owners]
     top = np.minimum(found.high_m + 0.16, found.wall_m)
@@ -93,7 +122,7 @@ def _frames(found: _Doors, styles: Styles) -> list[Patch]:
     return parts
 
 
-def _fittings(found: _Doors) -> list[Patch]:
+def _fittings(found: Doors) -> list[Patch]:
     """Return a step before each door, a pane in it and a handle on it."""
     step = _blocks(
         found.spots.moved(out_m=0.2),
@@ -143,17 +172,53 @@ def _blocks(
     )
 
 
-def _door_places(buildings: Sequence[Building], prints: Footprints) -> tuple[Ints, Floats]:
+def _door_places(buildings: Sequence[Building], prints: Footprints, around: Surroundings) -> tuple[Ints, Floats]:
     """Return the edges in which doors are, and how far from where the edge begins."""
     counts = np.array([len(one.entrances) for one in buildings], dtype=np.int64)
     points = np.concatenate([np.empty((0, 2)), *(one.entrances for one in buildings if len(one.entrances))])
     edges, distances = _nearest_edges(prints, points, np.repeat(np.arange(len(buildings)), counts))
-    # A building with no known entrance gets one in the middle of its longest wall.
-    outer = np.where(prints.in_court, -1.0, prints.lengths)
-    order = np.lexsort((outer, prints.owners))
-    longest = order[_last_of_runs(prints.owners[order])]
-    longest = longest[(counts[prints.owners[longest]] == 0) & (prints.lengths[longest] > 2.0)]
-    return np.concatenate([edges, longest]), np.concatenate([distances, prints.lengths[longest] / 2.0])
+    chosen = _likely_walls(prints, counts == 0, around)
+    edges = np.concatenate([edges, chosen])
+    distances = np.concatenate([distances, prints.lengths[chosen] / 2.0])
+    order = np.lexsort((distances, edges))
+    edges, distances = edges[order], distances[order]
+    near = np.append(False, (np.diff(edges) == 0) & (np.diff(distances) < _APART_M))[: len(edges)]
+    return edges[~near], distances[~near]
+
+
+def _likely_walls(prints: Footprints, wanted: Bools, around: Surroundings) -> Ints:
+    """Return for each wanted building the wall in whose middle a door is likely.
+
+    It is one of the longest, no other building stands right before it, and the nearer to a way the better.
+    """
+    fits = wanted[prints.owners] & ~prints.in_court & (prints.lengths > _LEAST_WALL_M)
+    edges = np.flatnonzero(fits)
+    if not len(edges):
+        return edges
+    order = np.lexsort((edges, -prints.lengths[edges], prints.owners[edges]))
+    edges = edges[order]
+    first = np.searchsorted(prints.owners[edges], prints.owners[edges])
+    edges = edges[np.arange(len(edges)) - first < _WALLS_TRIED]
+    middles = (prints.corners[edges] + prints.corners[prints.after[edges]]) / 2.0
+    before = middles + _OPEN_M * prints.outwards[edges]
+    cost = 1000.0 * prints.cover(before) + _way_off(before, around.ways) - 0.5 * np.minimum(prints.lengths[edges], 12.0)
+    order = np.lexsort((edges, cost, prints.owners[edges]))
+    best: Ints = edges[order[np.unique(prints.owners[edges][order], return_index=True)[1]]]
+    return best
+
+
+def _way_off(points: Floats, ways: Sequence[Way]) -> Floats:
+    """Return how far the nearest way on the ground is from points, at most `_FARTHEST_WAY_M`."""
+    off = np.full(len(points), _FARTHEST_WAY_M)
+    level = [way for way in ways if way.level == 0]
+    if level:
+        begins, ends, _ = segments_of(level)
+        tree = shapely.STRtree(shapely.linestrings(np.stack([begins, ends], axis=1)))
+        (at, _), gap = tree.query_nearest(
+            shapely.points(points), max_distance=_FARTHEST_WAY_M, return_distance=True, all_matches=False
+        )
+        off[at] = gap
+    return off
 
 
 def _nearest_edges(prints: Footprints, points: Floats, owner: Ints) -> tuple[Ints, Floats]:
@@ -169,8 +234,3 @@ def _nearest_edges(prints: Footprints, points: Floats, owner: Ints) -> tuple[Int
     best = best[gap[best] < _FAR_M]
     clear = np.minimum(0.75, length[best] / 2.0)
     return edge[best], np.clip(distance[best], clear, length[best] - clear)
-
-
-def _last_of_runs(values: Ints) -> Bools:
-    """Return which of sorted values are the last of their kind."""
-    return np.append(values[1:] != values[:-1], True)[: len(values)]

@@ -1,48 +1,36 @@
-"""Walls of many buildings: storeys with whole windows, ground floors, shop fronts, undersides, cornices."""
+"""Walls of many buildings: storeys with whole windows, ground floors, undersides, cornices."""
 
 import numpy as np
 
 from reasoned_explorer.rendering.building_roofs import RoofKind, Roofs
+from reasoned_explorer.rendering.building_shops import is_shop_wall
 from reasoned_explorer.rendering.building_styles import Family, Styles, mixed_draw
 from reasoned_explorer.rendering.footprints import Floats, Footprints, Ints
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.patches import Patch, lifted, plan_uvs, quads, rectangle_uvs
-from reasoned_explorer.rendering.wall_spots import runs
 
 #: What the facade textures show of a bay and of a storey, metres.
 _BAY_M = 3.0
 _GLASS_BAY_M = 1.5
-_SHOP_M = 4.0
 #: Shorter walls, and lower bands, have no windows, metres.
 _LEAST_WALL_M, _LEAST_BAND_M = 1.9, 1.9
-_SHOP_COLOURS = np.array(
-    [
-        (0.82, 0.80, 0.76),
-        (0.30, 0.42, 0.38),
-        (0.62, 0.22, 0.20),
-        (0.24, 0.32, 0.52),
-        (0.86, 0.66, 0.30),
-        (0.34, 0.34, 0.36),
-        (0.72, 0.72, 0.74),
-        (0.40, 0.52, 0.30),
-        (0.78, 0.44, 0.26),
-    ]
-)
 
 
 def walls(prints: Footprints, styles: Styles, roofs: Roofs, *, bands: bool) -> list[Patch]:
-    """Return all walls: with ``bands`` the ground floor is apart, without it windows run from the bottom up."""
+    """Return all walls: with ``bands`` the ground floor is apart, without it windows run from the bottom up.
+
+    Where shops are (`reasoned_explorer.rendering.building_shops`), walls with ``bands`` begin above them.
+    """
     every = np.arange(len(prints.corners))
     owner = prints.owners
     low, high = styles.base_m[owner], roofs.eaves_m[owner]
     if not bands:
         return _storeys(prints, styles, every, low, high)
     ground = np.minimum(styles.ground_m[owner], high)
-    shop = styles.shops[owner] & ~prints.in_court & (prints.lengths >= 2.5)
+    shop = is_shop_wall(prints, styles)
     base = (ground > low) & ~shop
     parts = _storeys(prints, styles, every, ground, high)
     parts += _storeys(prints, styles, every[base], low[base], ground[base], shade=0.86)
-    parts.append(_shop_fronts(prints, styles, every[shop], low[shop], ground[shop]))
     return parts
 
 
@@ -79,25 +67,6 @@ def _storeys(
 def _upright(prints: Footprints, edges: Ints, low: Floats, high: Floats) -> Floats:
     begin, end = prints.corners[edges], prints.corners[prints.after[edges]]
     return quads(lifted(begin, low), lifted(end, low), lifted(end, high), lifted(begin, high))
-
-
-def _shop_fronts(prints: Footprints, styles: Styles, edges: Ints, low: Floats, high: Floats) -> Patch:
-    """Return ground floors of shop fronts side by side, each in a colour of its own."""
-    fronts = np.maximum(np.round(prints.lengths[edges] / 4.6), 1.0).astype(np.int64)
-    row, place = runs(fronts)
-    wall, share = edges[row], np.stack([place, place + 1.0], axis=1) / fronts[row][:, None]
-    begin, along = prints.corners[wall], prints.corners[prints.after[wall]] - prints.corners[wall]
-    left, right = begin + share[:, :1] * along, begin + share[:, 1:] * along
-    corners = quads(lifted(left, low[row]), lifted(right, low[row]), lifted(right, high[row]), lifted(left, high[row]))
-    keys = styles.keys[prints.owners[wall]] + (prints.places[wall] * 64 + place).astype(np.uint64)
-    colours = _SHOP_COLOURS[(mixed_draw(keys, 12) * len(_SHOP_COLOURS)).astype(np.int64)]
-    return Patch.of(
-        corners,
-        rectangle_uvs(0.0, 0.0, _SHOP_M, _SHOP_M, len(row)),
-        colours=colours,
-        materials=int(Material.FACADE_SHOP),
-        owners=prints.owners[wall],
-    )
 
 
 def undersides(prints: Footprints, styles: Styles) -> Patch:

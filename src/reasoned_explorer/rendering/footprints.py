@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
-from reasoned_explorer.rendering.triangulation import starts_of
-from reasoned_explorer.rendering.triangulation_kernels import tidy_rings, triangulate_all
+from reasoned_explorer.rendering.triangulation import starts_of, tidy_rings, triangulate_all
 from reasoned_explorer.world.rounding import millimetres
 from reasoned_explorer.world.world import Building
 
@@ -69,7 +69,7 @@ class Footprints:
         ring_starts = starts_of(sizes[used])
         per_building = np.bincount(owner[used], minlength=len(buildings))
         corners = whole[kept]
-        triangles, _ = triangulate_all(corners, ring_starts, starts_of(per_building))
+        triangles = triangulate_all(corners, ring_starts, starts_of(per_building))
         after, before = _neighbours(ring_starts)
         return cls(
             len(buildings),
@@ -108,6 +108,13 @@ class Footprints:
         """Of each building, whether all its corners can be mitred, shape (count,)."""
         dot = np.sum(self.outwards[self.before] * self.outwards, axis=1)
         return np.asarray(np.bincount(self.owners[1.0 + dot < _SHARPEST], minlength=self.count) == 0)
+
+    def cover(self, points: Floats) -> Bools:
+        """Return which points, shape (n, 2), lie in a footprint."""
+        found = np.zeros(len(points), np.bool_)
+        tree = shapely.STRtree(shapely.polygons(self.corners[self.triangles]))
+        found[tree.query(shapely.points(points), predicate="intersects")[0]] = True
+        return found
 
     @cached_property
     def triangle_owners(self) -> Ints:

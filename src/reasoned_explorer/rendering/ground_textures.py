@@ -12,6 +12,7 @@ from reasoned_explorer.rendering.texture_patterns import (
     grey,
     grid,
     joint,
+    leaves,
     mixed,
     stones,
 )
@@ -106,11 +107,10 @@ def water() -> Field:
 def foliage() -> Field:
     """Return leaves before dark gaps; 1.5 m."""
     rng = generator_of("foliage")
-    inside, own = stones(rng, 18, jitter=1.0)
-    leaf = np.clip(inside / 0.22, 0.0, 1.0)
-    depth = clouds(rng, 4, 8, 16)
-    shade = 0.42 + 0.3 * leaf * (0.5 + own) + 0.38 * depth
-    return mixed((0.9, 1.0, 0.86), (1.0, 1.0, 0.7), own) * shade[..., None]
+    light, own = leaves(rng, 1500, 0.085)
+    depth = clouds(rng, 4, 8)
+    shade = 0.28 + 0.66 * light + 0.2 * depth
+    return mixed((0.88, 1.0, 0.82), (1.0, 1.0, 0.72), own) * shade[..., None]
 
 
 def flowers() -> Field:

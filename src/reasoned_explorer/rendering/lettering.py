@@ -83,6 +83,11 @@ class Plane:
         places = np.asarray(flat, np.float64)
         return np.asarray(np.asarray(self.origin) + places @ np.array([self.right, self.up]))
 
+    def nearer(self, by_m: float) -> "Plane":
+        """Return the plane moved towards its reader: what is drawn there lies on what is drawn here."""
+        x, y, z = (np.asarray(self.origin) + by_m * np.cross(self.right, self.up)).tolist()
+        return Plane((x, y, z), self.right, self.up)
+
 
 def facing_front(y: float, *, x: float = 0.0) -> Plane:
     """Return the upright plane at a depth that is read from ahead (+y); u = 0 at x, v is the height."""

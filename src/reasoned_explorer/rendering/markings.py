@@ -7,6 +7,7 @@ import shapely
 from numpy.typing import NDArray
 
 from reasoned_explorer.rendering.crossings import Crossings, crossings_of, is_carriageway
+from reasoned_explorer.rendering.edges import edges
 from reasoned_explorer.rendering.kerbs import kerbs, shores
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.mesh import Model
@@ -59,6 +60,7 @@ def markings_of(world: World, ground: GroundRaster, *, crossings: Crossings | No
         lying_on(stairs(world.ways), ground, Ground.STEPS),
         *kerbs(roads, ground, crossed),
         *shores(world, ground),
+        *edges(world, ground, crossed),
     ]
     return chunked(patches)
 

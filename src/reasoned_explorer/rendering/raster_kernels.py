@@ -141,8 +141,8 @@ def _ball_in_view(balls: Floats, i: int, view: Projection) -> bool:
 
 
 @part
-def _bound(boxes: Floats, prototype: int, matrix: Floats, width: int, height: int, rectangles: Ints, k: int) -> float:
-    """Set the rectangle that a box may cover; return its greatest nearness, or 0 if it is not in the picture."""
+def _bound(boxes: Floats, prototype: int, matrix: Floats, width: int, height: int) -> tuple[float, int, int, int, int]:
+    """A box's greatest nearness, or 0 if it is not in the picture; first and last column and row that it may cover."""
     least_x, most_x, least_y, most_y = math.inf, -math.inf, math.inf, -math.inf
     least_z, most_z = math.inf, -math.inf
     for corner in range(8):
@@ -158,14 +158,14 @@ def _bound(boxes: Floats, prototype: int, matrix: Floats, width: int, height: in
         least_x, most_x = min(least_x, x), max(most_x, x)
         least_y, most_y = min(least_y, y), max(most_y, y)
     if most_z < NEAR_M:
-        return 0.0
+        return 0.0, 0, 0, 0, 0
     if least_z <= NEAR_M:  # around the eye: it may cover all
         least_x, most_x, least_y, most_y = 0.0, float(width), 0.0, float(height)
-    rectangles[k, 0], rectangles[k, 1] = _first_sample(least_x), _last_sample(most_x, width)
-    rectangles[k, 2], rectangles[k, 3] = _first_sample(least_y), _last_sample(most_y, height)
-    if rectangles[k, 0] > rectangles[k, 1] or rectangles[k, 2] > rectangles[k, 3]:
-        return 0.0
-    return 1.0 / max(least_z, NEAR_M)
+    first_x, last_x = _first_sample(least_x), _last_sample(most_x, width)
+    first_y, last_y = _first_sample(least_y), _last_sample(most_y, height)
+    if first_x > last_x or first_y > last_y:
+        return 0.0, 0, 0, 0, 0
+    return 1.0 / max(least_z, NEAR_M), first_x, last_x, first_y, last_y
 
 
 @part
@@ -365,15 +365,17 @@ def _collect(
         if not everything and not _ball_in_view(cell_balls, cell, view):
             continue
         for k in range(starts[cell], starts[cell + 1]):
-            i = members[k]
+            i = members[k] + 0  # a wide number, as cells are: numba compiles a function once for each type
             if not everything:
                 if not _ball_in_view(balls, i, view):
                     continue
                 if balls[i, 3] * pixels < LEAST_SIZE * _distance(balls, i, view.eye):
                     continue
             _matrix_of(instances, i, view, matrix)
-            near = _bound(boxes, prototypes[i], matrix, view.width, view.height, rectangles, count)
+            near, first_x, last_x, first_y, last_y = _bound(boxes, prototypes[i], matrix, view.width, view.height)
             if near > 0.0:
+                rectangles[count, 0], rectangles[count, 1] = first_x, last_x
+                rectangles[count, 2], rectangles[count, 3] = first_y, last_y
                 candidates[count] = i
                 nearest[count] = near
                 count += 1
@@ -436,7 +438,7 @@ def draw(
         k = scratch.ordered[turn]
         if not everything and _hidden(canvas, rectangles, k, scratch.nearest[k]):
             continue
-        i = scratch.candidates[k]
+        i = scratch.candidates[k] + 0
         prototype = instances.prototypes[i]
         level = 0
         if not everything:

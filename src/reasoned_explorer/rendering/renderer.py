@@ -12,7 +12,9 @@ from reasoned_explorer.rendering.conditions import Conditions
 from reasoned_explorer.rendering.light import developing_curve, light_of, sun_direction
 from reasoned_explorer.rendering.mipmaps import ground_looks_of, material_textures, surfaces_of
 from reasoned_explorer.rendering.projection import Projection, projection_of
-from reasoned_explorer.rendering.raster_kernels import BLOCK, BUCKETS, Canvas, Scratch, draw, read_out
+from reasoned_explorer.rendering.raster_kernels import Canvas, draw, read_out
+from reasoned_explorer.rendering.readiness import Progress, make_ready
+from reasoned_explorer.rendering.room import Room, new_canvas
 from reasoned_explorer.rendering.scene import Scene
 from reasoned_explorer.rendering.shading_kernels import shade
 from reasoned_explorer.rendering.shadows import ShadowTiles
@@ -55,9 +57,12 @@ class Renderer:
     Args:
         scene: What there is.
         conditions: Time of day and weather.
+        on_progress: Told what takes long, now and then, where the kernels have to be compiled first.
     """
 
-    def __init__(self, scene: Scene, conditions: Conditions | None = None) -> None:
+    def __init__(
+        self, scene: Scene, conditions: Conditions | None = None, *, on_progress: Progress | None = None
+    ) -> None:
         self.scene = scene
         self.conditions = conditions or Conditions()
         self._light = light_of(self.conditions)
@@ -67,6 +72,7 @@ class Renderer:
         self._shadows = ShadowTiles(scene, sun_direction(self.conditions))
         self._curve = developing_curve()
         self._rooms = threading.local()
+        make_ready(on_progress)
 
     def picture(self, pose: Pose, camera: Camera, *, pitch_rad: float = 0.0, antialias: int = 1) -> Picture:
         """Return what a camera sees.
@@ -132,10 +138,10 @@ class Renderer:
                 return colour
             self._shadows.make(wanted)
 
-    def _room(self) -> "_Room":
+    def _room(self) -> Room:
         if not hasattr(self._rooms, "room"):
-            self._rooms.room = _Room(self.scene, self._shadows.wanted_size)
-        room: _Room = self._rooms.room
+            self._rooms.room = Room(self.scene, self._shadows.wanted_size)
+        room: Room = self._rooms.room
         return room
 
     def _canvas(self, view: Projection) -> Canvas:
@@ -143,37 +149,5 @@ class Renderer:
         key = (view.height, view.width)
         if key not in canvases:
             canvases.clear()
-            canvases[key] = _new_canvas(*key)
+            canvases[key] = new_canvas(*key)
         return canvases[key]
-
-
-class _Room:
-    """What one thread works in."""
-
-    def __init__(self, scene: Scene, wanted_size: int) -> None:
-        count = len(scene.instances.ids)
-        self.scratch = Scratch(
-            np.empty((int(scene.library.levels[:, 1].max(initial=1)), 5)),
-            np.empty(count, np.int32),
-            np.empty(count, np.int32),
-            np.empty(count),
-            np.empty((count + 1, 4), np.int32),
-            np.empty(count, np.int8),
-            np.empty(count, np.int32),
-            np.empty(BUCKETS + 1, np.int32),
-            np.empty((3, 4)),
-        )
-        self.samples = np.empty(4, np.int32), np.empty(4, np.int32)
-        self.wanted = np.zeros(wanted_size, np.uint8)
-        self.canvases: dict[tuple[int, int], Canvas] = {}
-
-
-def _new_canvas(height: int, width: int) -> Canvas:
-    blocks = (-(-height // BLOCK), -(-width // BLOCK))
-    return Canvas(
-        np.empty((height, width), np.float32),
-        np.empty((height, width), np.int32),
-        np.empty((height, width), np.int32),
-        np.empty(blocks, np.float32),
-        np.empty(blocks, np.uint8),
-    )

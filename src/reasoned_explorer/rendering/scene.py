@@ -1,21 +1,22 @@
 """What can be drawn of a world: models, and where each of them stands."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from reasoned_explorer.model.draws import choice, key_of
 from reasoned_explorer.rendering.buildings import models_of_buildings
+from reasoned_explorer.rendering.fronts import fronts_of, walls_taken
 from reasoned_explorer.rendering.ground import GroundMap, ground_of
 from reasoned_explorer.rendering.library import Library, linear_from_srgb, pack
 from reasoned_explorer.rendering.mesh import Model
-from reasoned_explorer.rendering.models import model_of, tints_of, variants_of
+from reasoned_explorer.rendering.readiness import Progress, begin
+from reasoned_explorer.rendering.standing import stands_of
 from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.taxonomy import CLASS_NAMES
-from reasoned_explorer.world.world import World, WorldObject
+from reasoned_explorer.world.world import World
 
 #: Instance ids of what is no object: sky, ground, and the first building.
 SKY_ID, GROUND_ID, FIRST_BUILDING_ID = 0, 1, 2
@@ -23,8 +24,6 @@ SKY_ID, GROUND_ID, FIRST_BUILDING_ID = 0, 1, 2
 PICTURE_CLASSES: tuple[str, ...] = ("sky", "ground", "building", *CLASS_NAMES)
 #: Edge of the cells in which instances are looked up, metres.
 CELL_M = 40.0
-#: A thing is never drawn smaller or larger than its model by more than this factor.
-_MOST_SCALE = 12.0
 
 
 class Instances(NamedTuple):
@@ -103,21 +102,33 @@ class Scene:
     classes: NDArray[np.uint8]
 
     @classmethod
-    def of(cls, world: World | Atlas, *, seed: int | None = None) -> "Scene":
-        """Return the scene of a world.
+    def of(cls, world: World | Atlas, *, seed: int | None = None, on_progress: Progress | None = None) -> "Scene":
+        """Return the scene of a world. If need be, the renderer's kernels are compiled meanwhile.
 
         Args:
             world: The world, or an atlas of it.
             seed: Of looks (which of its class's models a thing has, its colour); by default the world's own.
+            on_progress: Told what takes long.
         """
+        begin()
+        tell = on_progress or (lambda _: None)
+        tell("the ground")
         plain = world.world if isinstance(world, Atlas) else world
         looks = plain.seed if seed is None else seed
         first_object = FIRST_BUILDING_ID + len(plain.buildings)
         ground = ground_of(plain)
         things = [Placed(mesh, GROUND_ID, place) for mesh, place in ground.markings]
-        for k, (model, place) in enumerate(models_of_buildings(plain.buildings, seed=looks)):
+        tell("buildings")
+        fronts = fronts_of(plain)
+        taken = walls_taken(list(fronts.values()))
+        for k, (model, place) in enumerate(
+            models_of_buildings(plain.buildings, seed=looks, fronts=taken, ways=plain.ways)
+        ):
             things.append(Placed(model, FIRST_BUILDING_ID + k, place))
-        things += [_placed(item, looks, first_object + item.id) for item in plain.objects]
+        tell("things")
+        for one in stands_of(plain, fronts, seed=looks):
+            place_m = (one.x_m, one.y_m, 0.0)
+            things.append(Placed(one.model, first_object + one.item, place_m, one.heading_rad, one.scale, one.tint))
         codes = {name: PICTURE_CLASSES.index(name) for name in CLASS_NAMES}
         classes = [0, 1, *([2] * len(plain.buildings)), *(codes[item.class_name] for item in plain.objects)]
         return cls.of_things(things, ground, np.array(classes, np.uint8))
@@ -138,30 +149,6 @@ class Scene:
         """Triangles of all things at full detail."""
         firsts = self.library.prototypes[self.instances.prototypes, 0]
         return int(self.library.levels[firsts, 3].astype(np.int64).sum())
-
-
-def _placed(item: WorldObject, seed: int, instance_id: int) -> Placed:
-    variant = key_of(seed, "variant", item.id) % variants_of(item.class_name)
-    model = model_of(item.class_name, variant)
-    tint = choice(tints_of(item.class_name), seed, "tint", item.id)
-    return Placed(model, instance_id, (item.x_m, item.y_m, 0.0), item.heading_rad, _scale(model, item), tint)
-
-
-def _scale(model: Model, item: WorldObject) -> tuple[float, float, float]:
-    size_m = item.size_m
-    if item.object_class.kind == "vehicle":  # its length lies ahead, whichever way round the size was given
-        size_m = (min(size_m[:2]), max(size_m[:2]), size_m[2])
-
-    def ratio(axis: int) -> float:
-        natural = model.size_m[axis]
-        wanted = size_m[axis] / natural if natural > 0.0 and size_m[axis] > 0.0 else 1.0
-        return min(max(wanted, 1.0 / _MOST_SCALE), _MOST_SCALE)
-
-    scalings: Mapping[str, Callable[[], tuple[float, float, float]]] = {
-        "axes": lambda: (ratio(0), ratio(1), ratio(2)),
-        "uniform": lambda: (ratio(2), ratio(2), ratio(2)),
-    }
-    return scalings.get(model.scaling, lambda: (1.0, 1.0, 1.0))()
 
 
 def _instances(things: Sequence[Placed], prototypes: NDArray[np.int32], library: Library) -> Instances:

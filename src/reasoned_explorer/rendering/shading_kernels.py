@@ -363,7 +363,7 @@ def _ground(
     footprint = distance * pixel / math.sqrt(lift)
     cells = footprint * corner[3]
     kind = _kind_at(codes, corner, x, y)
-    material = materials[kind]
+    material = materials[kind] + 0  # a wide number, as in `_surface`: numba compiles a function once for each type
     red, green, blue = float(colours[kind, 0]), float(colours[kind, 1]), float(colours[kind, 2])
     if cells < _COARSE_CELLS:
         texel = _texel(texels, starts, per_metre, size, material, x, y, footprint)

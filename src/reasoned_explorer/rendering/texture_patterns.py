@@ -128,6 +128,34 @@ def joint(place_u: Field, place_v: Field, *, width_u: float, width_v: float) -> 
     return mask
 
 
+def leaves(rng: Generator, count: int, length: float) -> tuple[Field, Field]:
+    """Return leaves that lie over each other, the later ones on top and lighter.
+
+    Args:
+        rng: Draws.
+        count: Of leaves.
+        length: Of a leaf, as a share of the texture.
+
+    Returns:
+        How light each texel is, in [0, 1], 0 in gaps; and a number in [0, 1) for each leaf.
+    """
+    u, v = grid()
+    light, own = np.zeros((SIZE, SIZE)), np.zeros((SIZE, SIZE))
+    for place in range(count):
+        x, y, angle, shade, size = rng.random(5)
+        across, up = (u - x + 0.5) % 1.0 - 0.5, (v - y + 0.5) % 1.0 - 0.5
+        turn = 2.0 * np.pi * angle
+        along, aside = across * np.cos(turn) + up * np.sin(turn), up * np.cos(turn) - across * np.sin(turn)
+        half = 0.5 * length * (0.75 + 0.5 * size)
+        share = along / half
+        # Two arcs that meet in points.
+        inside = np.abs(aside) < 0.42 * half * (1.0 - share * share)
+        # A fold along the middle: one side catches more light than the other.
+        lit = (0.45 + 0.45 * place / count + 0.2 * (shade - 0.5)) * np.where(aside > 0.0, 1.0, 0.84)
+        light, own = np.where(inside, np.clip(lit, 0.0, 1.0), light), np.where(inside, shade, own)
+    return light, own
+
+
 def mixed(one: tuple[float, float, float], other: tuple[float, float, float], share: Field) -> Field:
     """Return colours between two, shape (SIZE, SIZE, 3): the first where the share is 0."""
     picture: Field = np.asarray(one) * (1.0 - share[..., None]) + np.asarray(other) * share[..., None]

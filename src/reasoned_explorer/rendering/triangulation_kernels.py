@@ -6,14 +6,15 @@ simple polygon has two ears, and that a hole's rightmost corner sees a corner to
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from reasoned_explorer.rendering.compiling import kernel, part
 
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def _turn(points: Ints, a: int, b: int, c: int) -> int:
     """Return twice the area of a triangle: positive if counter-clockwise."""
     return (points[b, 0] - points[a, 0]) * (points[c, 1] - points[a, 1]) - (points[b, 1] - points[a, 1]) * (
@@ -21,12 +22,12 @@ def _turn(points: Ints, a: int, b: int, c: int) -> int:
     )
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def _same(points: Ints, a: int, b: int) -> bool:
     return points[a, 0] == points[b, 0] and points[a, 1] == points[b, 1]
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def _between(points: Ints, p: int, a: int, b: int) -> bool:
     """Return whether a point that is in line with a segment lies on it, ends included."""
     return min(points[a, 0], points[b, 0]) <= points[p, 0] <= max(points[a, 0], points[b, 0]) and min(
@@ -34,7 +35,7 @@ def _between(points: Ints, p: int, a: int, b: int) -> bool:
     ) <= points[p, 1] <= max(points[a, 1], points[b, 1])
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def _meet(points: Ints, a: int, b: int, c: int, d: int) -> bool:
     """Return whether two segments share a point that is no end of the first."""
     abc, abd = _turn(points, a, b, c), _turn(points, a, b, d)
@@ -47,7 +48,7 @@ def _meet(points: Ints, a: int, b: int, c: int, d: int) -> bool:
     return False
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def _lie_along(points: Ints, a: int, b: int, c: int, d: int) -> bool:
     """Return whether the first segment lies on the second."""
     if _turn(points, c, d, a) != 0 or _turn(points, c, d, b) != 0:
@@ -55,7 +56,7 @@ def _lie_along(points: Ints, a: int, b: int, c: int, d: int) -> bool:
     return _between(points, a, c, d) and _between(points, b, c, d)
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def _looks_inside(points: Ints, before: int, at: int, after: int, towards: int, least: int) -> bool:
     """Return whether a direction leads from a corner into the polygon on its left; with ``least`` 0 along its edge."""
     if _turn(points, before, at, after) > 0:
@@ -63,8 +64,10 @@ def _looks_inside(points: Ints, before: int, at: int, after: int, towards: int, 
     return not (_turn(points, at, towards, after) >= 0 and _turn(points, towards, at, before) >= 0)
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def _bridge(points: Ints, corner: Ints, after: Ints, before: Ints, size: int, hole: int, least: int) -> int:
+@part
+def _bridge(
+    points: Ints, corner: Ints, after: Ints, before: Ints, size: int, hole: int, least: int, tried: Bools
+) -> int:
     """Return the loop's node that is nearest to a hole's corner and sees it, or -1.
 
     Where a hole touches the outline, it may only be seen along an edge: with ``least`` 0.
@@ -77,8 +80,10 @@ def _bridge(points: Ints, corner: Ints, after: Ints, before: Ints, size: int, ho
         size: How many nodes there are, on all rings.
         hole: The node of the hole that looks.
         least: 1, or 0 if it may look along an edge.
+        tried: Room, shape (n,).
     """
-    tried = np.zeros(size, np.bool_)
+    for node in range(size):
+        tried[node] = False
     eye = corner[hole]
     while True:
         nearest, gap = -1, np.int64(0)
@@ -108,7 +113,7 @@ def _bridge(points: Ints, corner: Ints, after: Ints, before: Ints, size: int, ho
             return nearest
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def _is_ear(points: Ints, corner: Ints, after: Ints, before: Ints, node: int, strict: bool) -> bool:
     """Return whether no corner of the loop lies in the triangle at a node, or on its border unless ``strict``."""
     a, b, c = corner[before[node]], corner[node], corner[after[node]]
@@ -135,7 +140,7 @@ def _is_ear(points: Ints, corner: Ints, after: Ints, before: Ints, node: int, st
     return True
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def _without_spikes(points: Ints, corner: Ints, after: Ints, before: Ints, node: int, left: int) -> tuple[int, int]:
     """Take a node out where the loop turns back on itself or stands still, and those before it where that makes more.
 
@@ -155,13 +160,13 @@ def _without_spikes(points: Ints, corner: Ints, after: Ints, before: Ints, node:
     return node, left
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def _cut_ears(points: Ints, corner: Ints, after: Ints, before: Ints, left: int, triangles: Ints) -> int:
-    """Cut the loop of ``left`` nodes into triangles and return how many there are.
+@part
+def _cut_ears(points: Ints, corner: Ints, after: Ints, before: Ints, left: int, triangles: Ints, made: int) -> int:
+    """Cut the loop of ``left`` nodes into triangles behind those that are ``made``; return how many there are then.
 
     Where no ear is found, which a proper polygon does not let happen, ever worse ones are taken: it always ends.
     """
-    node, idle, patience, made = before[0], 0, 0, 0
+    node, idle, patience = before[0], 0, 0
     for _ in range(left):
         node, left = _without_spikes(points, corner, after, before, node, left)
         node = after[node]
@@ -190,7 +195,7 @@ def _cut_ears(points: Ints, corner: Ints, after: Ints, before: Ints, left: int, 
     return made
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def _link_rings(ring_starts: Ints, first: int, beyond: int, corner: Ints, after: Ints, before: Ints) -> int:
     """Make a node for every corner of rings and return how many there are."""
     size = 0
@@ -205,7 +210,7 @@ def _link_rings(ring_starts: Ints, first: int, beyond: int, corner: Ints, after:
     return size
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def _next_eye(points: Ints, ring_starts: Ints, first: int, beyond: int, corner: Ints, merged: Bools) -> tuple[int, int]:
     """Return the rightmost node of all holes that are not merged yet, and its ring."""
     eye, found = -1, -1
@@ -217,33 +222,40 @@ def _next_eye(points: Ints, ring_starts: Ints, first: int, beyond: int, corner: 
     return eye, found
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def triangulate_all(points: Ints, ring_starts: Ints, polygon_starts: Ints) -> tuple[Ints, Ints]:
-    """Cut polygons into triangles.
+@kernel
+def triangulate(
+    points: Ints,
+    ring_starts: Ints,
+    polygon_starts: Ints,
+    corner: Ints,
+    after: Ints,
+    before: Ints,
+    merged: Bools,
+    tried: Bools,
+    triangles: Ints,
+) -> int:
+    """Cut polygons into triangles and return how many there are.
 
     Args:
         points: Corners of all rings, shape (n, 2), whole numbers; outlines counter-clockwise, holes clockwise.
         ring_starts: Where each ring begins in ``points``, and where the last ends.
         polygon_starts: Where each polygon's rings begin, its outline first, and where the last ends.
-
-    Returns:
-        Triangles, counter-clockwise, as places in ``points``, shape (m, 3); and where each polygon's triangles begin,
-        and the last's end.
+        corner: Room for two more than the corners and twice the rings of the largest polygon.
+        after: Likewise.
+        before: Likewise.
+        merged: Likewise.
+        tried: Likewise.
+        triangles: Set: places in ``points``, counter-clockwise, shape (m, 3).
     """
-    polygons = len(polygon_starts) - 1
-    triangles = np.empty((len(points) + 2 * len(ring_starts), 3), np.int64)
-    starts = np.zeros(polygons + 1, np.int64)
-    made = 0
-    for polygon in range(polygons):
+    made = ring_starts[0]  # 0, but no constant: numba compiles a function once more for each
+    for polygon in range(len(polygon_starts) - 1):
         first, beyond = polygon_starts[polygon], polygon_starts[polygon + 1]
-        starts[polygon + 1] = made
         if first == beyond:
             continue
-        room = ring_starts[beyond] - ring_starts[first] + 2 * (beyond - first)
-        corner, after, before = np.empty(room, np.int64), np.empty(room, np.int64), np.empty(room, np.int64)
         size = _link_rings(ring_starts, first, beyond, corner, after, before)
         left = ring_starts[first + 1] - ring_starts[first]
-        merged = np.zeros(beyond - first, np.bool_)
+        for ring in range(beyond - first):
+            merged[ring] = False
         for _ in range(first + 1, beyond):
             eye, ring = _next_eye(points, ring_starts, first, beyond, corner, merged)
             merged[ring - first] = True
@@ -251,7 +263,7 @@ def triangulate_all(points: Ints, ring_starts: Ints, polygon_starts: Ints) -> tu
             # A loop, since numba compiles a function once more for every constant that it is given.
             for least in (1, 0):
                 if seen < 0:
-                    seen = _bridge(points, corner, after, before, size, eye, least)
+                    seen = _bridge(points, corner, after, before, size, eye, least, tried)
             if seen < 0:
                 continue
             # Out along the bridge, around the hole, and back on doubles of both ends.
@@ -262,12 +274,11 @@ def triangulate_all(points: Ints, ring_starts: Ints, polygon_starts: Ints) -> tu
             after[seen], before[eye] = eye, seen
             size += 2
             left += ring_starts[ring + 1] - ring_starts[ring] + 2
-        made += _cut_ears(points, corner, after, before, left, triangles[made:])
-        starts[polygon + 1] = made
-    return triangles[:made], starts
+        made = _cut_ears(points, corner, after, before, left, triangles, made)
+    return made
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@part
 def _tidy(points: Ints, begin: int, end: int, slack: int, kept: Ints) -> int:
     """Write the corners that shape a ring into ``kept`` and return how many there are.
 
@@ -293,9 +304,11 @@ def _tidy(points: Ints, begin: int, end: int, slack: int, kept: Ints) -> int:
     return count
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def tidy_rings(points: Ints, ring_starts: Ints, is_hole: Bools, slack: int, least_area: int) -> tuple[Ints, Ints]:
-    """Return rings without corners that shape nothing, outlines counter-clockwise and holes clockwise.
+@kernel
+def tidy(
+    points: Ints, ring_starts: Ints, is_hole: Bools, slack: int, least_area: int, found: Ints, starts: Ints
+) -> None:
+    """Take corners out of rings that shape nothing; turn outlines counter-clockwise and holes clockwise.
 
     Args:
         points: Shape (n, 2), whole numbers.
@@ -303,13 +316,11 @@ def tidy_rings(points: Ints, ring_starts: Ints, is_hole: Bools, slack: int, leas
         is_hole: Of each ring.
         slack: How far a corner may be off the line and still go.
         least_area: Rings of less than this lose all their corners.
-
-    Returns:
-        Places in ``points`` of the corners that stay, and where each ring begins in them, and the last ends.
+        found: Set: places in ``points`` of the corners that stay, shape (n,).
+        starts: Set: where each ring begins in them, and the last ends.
     """
-    found = np.empty(len(points), np.int64)
-    starts = np.zeros(len(ring_starts), np.int64)
     size = 0
+    starts[0] = 0
     for ring in range(len(ring_starts) - 1):
         kept = found[size:]
         count = _tidy(points, ring_starts[ring], ring_starts[ring + 1], slack, kept)
@@ -323,4 +334,3 @@ def tidy_rings(points: Ints, ring_starts: Ints, is_hole: Bools, slack: int, leas
                 kept[at], kept[count - 1 - at] = kept[count - 1 - at], kept[at]
         size += count
         starts[ring + 1] = size
-    return found[:size], starts

@@ -28,7 +28,7 @@ from reasoned_explorer.world.sight_kernels import (
 WALL_RAYS = 21
 #: Directions along which the ground is told, and how far ahead.
 GROUND_BEARINGS = (-math.pi / 6.0, 0.0, math.pi / 6.0)
-_GROUND_AHEAD_M = (3.0, 8.0, 18.0)
+GROUND_AHEAD_M = (3.0, 8.0, 18.0)
 # Seen through a crack: what shows less than this share of itself is taken as hidden.
 _LEAST_SHARE = 0.05
 _ARC_STEPS = 8
@@ -73,8 +73,7 @@ def _window(header: FloatArray, x: float, y: float, heading: float, half_fov: fl
 
 
 @njit(cache=True)
-def see_objects(
-    hiding: Grid,
+def in_view(
     seats: Grid,
     targets: Targets,
     x: float,
@@ -87,10 +86,10 @@ def see_objects(
     range_m: float,
     min_px: float,
 ) -> FloatArray:
-    """Return what is seen, nearest first, shape (n, 6): object, bearing, distance, width, height (px), visible share.
+    """Return what a view would show if nothing hid anything, in no particular order, shape (n, 7).
 
-    ``seats`` holds each target as a disc around its footprint. How finely a thing is probed for being hidden goes by
-    its size in the picture: one ray for a speck, five by three for what is wide and high.
+    Columns: object, leftmost and rightmost bearing within the view, bearing of its middle, least distance, width and
+    height (px). ``seats`` holds each target as a disc around its footprint.
     """
     header, table = seats.header, targets.table
     sin_h, cos_h = math.sin(heading), math.cos(heading)
@@ -102,7 +101,7 @@ def see_objects(
     count = 0
     for j in range(window[2], window[3] + 1):
         count += seats.starts[j * columns + window[1] + 1] - seats.starts[j * columns + window[0]]
-    seen = np.empty((count, 6))
+    found = np.empty((count, 7))
     count = 0
     for j in range(window[2], window[3] + 1):
         for i in range(window[0], window[1] + 1):
@@ -133,18 +132,50 @@ def see_objects(
                 tall = _picture_height(target, near, far, middle, z, focal_px, 0.5 * height_px)
                 if wide * tall < min_px * min_px:
                     continue
-                rays = 1 if wide < 6.0 else (3 if wide < 48.0 else 5)
-                levels = 1 if tall < 8.0 else (2 if tall < 64.0 else 3)
-                share = target_share(hiding, targets, k, x, y, z, heading, low, high, near, rays, levels)
-                if share < _LEAST_SHARE or wide * tall * share < min_px * min_px:
-                    continue
-                rank = count
-                while rank > 0 and (near < seen[rank - 1, 2] or (near == seen[rank - 1, 2] and k < seen[rank - 1, 0])):
-                    seen[rank] = seen[rank - 1]
-                    rank -= 1
-                seen[rank, 0], seen[rank, 1], seen[rank, 2] = k, middle, near
-                seen[rank, 3], seen[rank, 4], seen[rank, 5] = wide, tall, share
+                found[count, 0], found[count, 1], found[count, 2], found[count, 3] = k, low, high, middle
+                found[count, 4], found[count, 5], found[count, 6] = near, wide, tall
                 count += 1
+    return found[:count]
+
+
+@njit(cache=True)
+def see_objects(
+    hiding: Grid,
+    seats: Grid,
+    targets: Targets,
+    x: float,
+    y: float,
+    z: float,
+    heading: float,
+    half_fov: float,
+    width_px: float,
+    height_px: float,
+    range_m: float,
+    min_px: float,
+) -> FloatArray:
+    """Return what is seen, nearest first, shape (n, 6): object, bearing, distance, width, height (px), visible share.
+
+    How finely a thing is probed for being hidden goes by its size in the picture: one ray for a speck, five by three
+    for what is wide and high.
+    """
+    shown = in_view(seats, targets, x, y, z, heading, half_fov, width_px, height_px, range_m, min_px)
+    seen = np.empty((shown.shape[0], 6))
+    count = 0
+    for row in range(shown.shape[0]):
+        k, low, high, middle = int(shown[row, 0]), shown[row, 1], shown[row, 2], shown[row, 3]
+        near, wide, tall = shown[row, 4], shown[row, 5], shown[row, 6]
+        rays = 1 if wide < 6.0 else (3 if wide < 48.0 else 5)
+        levels = 1 if tall < 8.0 else (2 if tall < 64.0 else 3)
+        share = target_share(hiding, targets, k, x, y, z, heading, low, high, near, rays, levels)
+        if share < _LEAST_SHARE or wide * tall * share < min_px * min_px:
+            continue
+        rank = count
+        while rank > 0 and (near < seen[rank - 1, 2] or (near == seen[rank - 1, 2] and k < seen[rank - 1, 0])):
+            seen[rank] = seen[rank - 1]
+            rank -= 1
+        seen[rank, 0], seen[rank, 1], seen[rank, 2] = k, middle, near
+        seen[rank, 3], seen[rank, 4], seen[rank, 5] = wide, tall, share
+        count += 1
     return seen[:count]
 
 
@@ -188,7 +219,7 @@ def see_ground(
         told[k, 4] = solid.owners[item, 0] if item >= 0 else 0
         told[k, 5] = solid.owners[item, 1] if item >= 0 else -1
         for step in range(3):
-            ahead = _GROUND_AHEAD_M[step]
+            ahead = GROUND_AHEAD_M[step]
             if told[k, 4] == BUILDING and free <= ahead:
                 told[k, step] = building
                 continue

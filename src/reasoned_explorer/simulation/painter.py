@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,9 +9,10 @@ from numpy.typing import NDArray
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Camera, Fault, SettingsError
 from reasoned_explorer.model.checks import is_within
+from reasoned_explorer.simulation.renderers import renderer_of
 
 if TYPE_CHECKING:
-    from reasoned_explorer.rendering.renderer import Picture, Renderer
+    from reasoned_explorer.rendering.renderer import Picture
     from reasoned_explorer.world.atlas import Atlas
 
 #: Sides of pictures that can be taken, pixels.
@@ -49,7 +49,7 @@ class Painter:
     def __init__(self, atlas: "Atlas", *, side_px: int = 448, conditions: str = "clear") -> None:
         if faults := faults_of_pictures(side_px, conditions):
             raise SettingsError("pictures", faults)
-        self._renderer = _renderer_of(atlas, conditions)
+        self._renderer = renderer_of(atlas, conditions)
         self._side_px = side_px
 
     def paint(self, pose: Pose, camera: Camera) -> NDArray[np.uint8]:
@@ -65,19 +65,3 @@ class Painter:
         """
         square = replace(camera, width_px=self._side_px, height_px=self._side_px)
         return self._renderer.picture(pose, square, antialias=_ANTIALIAS)
-
-
-#: Renderers of worlds that are in use, by conditions: a scene takes a second, and many missions share one.
-_RENDERERS: "WeakKeyDictionary[Atlas, dict[str, Renderer]]" = WeakKeyDictionary()
-
-
-def _renderer_of(atlas: "Atlas", conditions: str) -> "Renderer":
-    from reasoned_explorer.rendering.conditions import PRESETS
-    from reasoned_explorer.rendering.renderer import Renderer
-    from reasoned_explorer.rendering.scene import Scene
-
-    made = _RENDERERS.setdefault(atlas, {})
-    if conditions not in made:
-        scene = next((renderer.scene for renderer in made.values()), None) or Scene.of(atlas)
-        made[conditions] = Renderer(scene, PRESETS[conditions])
-    return made[conditions]

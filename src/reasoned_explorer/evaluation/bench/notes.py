@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from reasoned_explorer.evaluation.bench.results import reads_the_truth
+from reasoned_explorer.evaluation.mission_settings import THROUGH_PIXELS
 from reasoned_explorer.evaluation.row import MissionRow
 from reasoned_explorer.model.record import MissionEnd
 
@@ -55,10 +56,13 @@ def notes_of(rows: Iterable[MissionRow], *, total: int) -> Notes:
     captioners = sorted({row.captioner for row in rows if _SIMULATED in row.captioner})
     if captioners:
         # A mission that could not be run knows its captioner by name alone.
-        names = [name.removeprefix(_SIMULATED).strip(" ()") for name in captioners]
+        plain = [name.removesuffix(THROUGH_PIXELS) for name in captioners]
+        names = sorted({name.removeprefix(_SIMULATED).strip(" ()") for name in plain})
         wrong = [f"“{name}”" for name in names if name != _WITHOUT_ERROR]
         rates = f"the error rates of {' and '.join(wrong)} are assumed" if wrong else "without error"
         once.append(f"Captions are a simulated captioner’s{';' if wrong else ','} {rates}.")
+        if plain != captioners:
+            once.append("It sees through pixels: what has pixels in a picture of the view is visible.")
     if any(row.ct_label.startswith("modelled") for row in rows):
         once.append("CT is modelled: each call is charged what a latency profile says, not what it took.")
     unpriced = sum(row.unpriced for row in rows)

@@ -190,9 +190,9 @@ def _post_box_yellow(builder: MeshBuilder) -> None:
     for plane in (facing_front(0.242), facing_back(-0.242)):
         builder.decal(BLACK, plane.points(rectangle(0, 1.0, 0.34, 0.06)))
         if builder.detail <= 1:
-            builder.decal(SIGN_WHITE, plane.points(rectangle(0.12, 0.52, 0.15, 0.18)))
+            builder.decal(SIGN_WHITE, plane.points(rectangle(0.15, 0.52, 0.12, 0.18)))
             _horn(builder, plane, (0.0, 0.80))
-            write(builder, BLACK, "POST", plane, centre=(-0.08, 0.52), height_m=0.09)
+            write(builder, BLACK, "POST", plane.nearer(0.01), centre=(-0.08, 0.52), height_m=0.09)
 
 
 def _horn(builder: MeshBuilder, plane: Plane, centre: tuple[float, float]) -> None:

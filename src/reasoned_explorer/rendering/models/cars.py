@@ -245,9 +245,9 @@ def _ends(builder: MeshBuilder, body: _Body) -> None:
     if builder.detail == 2:
         return
     builder.box(_PLASTIC, (-0.42, 2.1, nose - 0.2), (0.42, 2.19, nose - 0.06))
-    builder.box(_PLASTIC, (-0.76, 2.0, 0.26), (0.76, 2.2, 0.42), bevel=0.03)
-    builder.box(_PLASTIC, (-0.76, -2.2, 0.28), (0.76, -2.0, 0.46), bevel=0.03)
-    builder.decal(SIGN_WHITE, facing_front(2.212).points(rectangle(0, 0.36, 0.5, 0.11)))
+    builder.box(_PLASTIC, (-0.76, 2.0, 0.26), (0.76, 2.23, 0.42), bevel=0.03)
+    builder.box(_PLASTIC, (-0.76, -2.23, 0.28), (0.76, -2.0, 0.46), bevel=0.03)
+    builder.decal(SIGN_WHITE, facing_front(2.242).points(rectangle(0, 0.36, 0.5, 0.11)))
     builder.box(SIGN_WHITE, (-0.26, -2.205, 0.55), (0.26, -2.1, 0.67))
 
 

@@ -97,6 +97,7 @@ def add_tufts(
     count: int,
     size_m: float,
     spread: float = 1.0,
+    slim: float = 0.0,
 ) -> None:
     """Add tufts of leaves around the clumps.
 
@@ -108,6 +109,7 @@ def add_tufts(
         count: Of tufts; each is one triangle, seen from both sides.
         size_m: From a tuft's middle to its tips.
         spread: How far from the clump's middle they sit, in its radii.
+        slim: From 0 (as wide as long) to 1 (sprays with one long tip).
     """
     share = crown.radii**2 / (crown.radii**2).sum()
     clump = np.searchsorted(np.cumsum(share), (np.arange(count) + 0.5) / count).clip(max=len(share) - 1)
@@ -119,7 +121,7 @@ def add_tufts(
     facing = _unit(towards + 0.75 * _unit(rng.normal(size=(count, 3))))
     first, second = _frames(facing)
     angles = rng.uniform(0.0, 2.0 * math.pi, (count, 1)) + np.array([0.0, 2.1, 4.2]) + rng.normal(0.0, 0.3, (count, 3))
-    tips = size_m * rng.uniform(0.65, 1.2, (count, 3))
+    tips = size_m * rng.uniform(0.65, 1.2, (count, 3)) * (1.0 + slim * np.array([0.5, -0.45, -0.45]))
     corners = (
         places[:, None]
         + (tips * np.cos(angles))[..., None] * first[:, None]

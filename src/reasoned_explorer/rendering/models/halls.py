@@ -121,15 +121,15 @@ def _library(builder: MeshBuilder, variant: int) -> None:
         builder.decal(GLASS, facing_front(0.35).points(rectangle(0, 1.2, 1.3, 2.3)))
         builder.sheet(trim, [(-0.8, 0.1, 2.6), (0.8, 0.1, 2.6), (0.8, 0.5, 2.6), (-0.8, 0.5, 2.6)])
         return
-    builder.box(wall, (-4, 0, 0), (4, 0.07, 4))
+    builder.box(wall, (-3.98, 0, 0), (3.98, 0.07, 4))
     builder.box(trim, (-4, 0.0, 0.0), (4, 0.14, 0.35))
-    builder.box(trim, (-3.98, 0.03, 3.05), (3.98, 0.18, 3.95), bevel=0.03)
+    builder.box(trim, (-3.96, 0.03, 3.05), (3.96, 0.18, 3.95), bevel=0.03)
     write(builder, plain(0.13, 0.22, 0.36), "LIBRARY", facing_front(0.192), centre=(0, 3.5), height_m=0.58)
     for u in (-3.2, 3.2):
         _open_book(builder, u, 3.5)
     for x in (-3.1, -1.75, 1.75, 3.1):
         _arched_window(builder, trim, x)
-    builder.box(trim, (-0.95, 0.03, 0), (0.95, 0.13, 2.75))
+    builder.box(trim, (-0.95, 0.03, 0), (0.95, 0.1, 2.75))
     add_door(builder, DARK_WOOD, width=1.3, height=2.3)
     builder.box(trim, (-1.1, 0.03, 2.6), (1.1, 0.4, 2.78), bevel=0.03)
     for step, deep in enumerate((0.5, 0.38)):
@@ -232,7 +232,7 @@ def _windows_of_glass(builder: MeshBuilder, stone: Surface) -> None:
 
 def _cross_on(builder: MeshBuilder, surface: Surface) -> None:
     """The cross on the tip of the gable."""
-    builder.box(surface, (-0.3, 0.0, 6.75), (0.3, 0.4, 7.02))
+    builder.box(surface, (-0.3, 0.0, 6.75), (0.3, 0.44, 7.02))
     builder.box(surface, (-0.08, 0.12, 7.0), (0.08, 0.28, 8.0))
     builder.box(surface, (-0.36, 0.12, 7.5), (0.36, 0.28, 7.66))
 

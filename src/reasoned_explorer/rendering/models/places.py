@@ -207,7 +207,7 @@ def _atm(builder: MeshBuilder, variant: int) -> None:
         builder.decal(SIGN_WHITE.shaded(0.8), facing_front(0.31).points(rectangle(0, 1.62, 0.8, 0.26)))
         builder.decal(plain(0.45, 0.55, 0.60), facing_front(0.31).points(rectangle(0, 1.2, 0.6, 0.4)))
         return
-    builder.box(STEEL, (-0.5, 0.0, 0.0), (0.5, 0.12, 1.8))
+    builder.box(STEEL, (-0.48, 0.0, 0.0), (0.48, 0.12, 1.78))
     builder.box(body, (-0.46, 0.08, 0.06), (0.46, 0.22, 0.98), bevel=0.02)
     builder.extrude(
         body, [(0.08, 0.9), (0.3, 0.9), (0.3, 0.96), (0.14, 1.06), (0.14, 1.45), (0.08, 1.45)], "x", -0.46, 0.46

@@ -1,13 +1,16 @@
 """Playgrounds and pitches, and what stands on them by itself: swings, slides."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
 
 from reasoned_explorer.rendering.lettering import Plane, disc, line, rectangle
 from reasoned_explorer.rendering.material import Material
+from reasoned_explorer.rendering.mesh import Model
 from reasoned_explorer.rendering.mesh_builder import FAR, MeshBuilder, Surface
 from reasoned_explorer.rendering.models.maker import Maker
 from reasoned_explorer.rendering.models.palette import (
@@ -80,7 +83,7 @@ def _slide(builder: MeshBuilder, variant: int) -> None:
         builder.beam(frame, (-1.42, y * 1.1, 2.16), (-0.74, y * 1.1, 2.16), 0.08, 0.08)
         if builder.detail == 0:
             builder.beam(frame, (-1.38, y, 1.8), (-0.78, y, 1.8), 0.04, 0.04)
-            builder.beam(frame, (1.2, y, 0), (1.2, y, 0.3), 0.05, 0.05, up=(1, 0, 0))
+            builder.beam(frame, (1.2, y, 0), (1.2, y, 0.3), 0.05, 0.03, up=(0, 1, 0))
     for (x0, z0), (x1, z1) in pairwise(path):
         builder.beam(chute, (x0, 0, z0), (x1, 0, z1), 0.62, 0.04)
     builder.box(PALE_WOOD, (-1.42, -0.34, 1.41), (-0.72, 0.34, 1.47))
@@ -141,7 +144,7 @@ def _climbing_frame(builder: MeshBuilder, variant: int) -> None:
         for y in ys:
             builder.cylinder(SIGN_BLUE, (xs[0], y, z), (xs[-1], y, z), 0.035, sides=sides)
         for x in xs:
-            builder.cylinder(SIGN_YELLOW, (x, ys[0], z), (x, ys[-1], z), 0.035, sides=sides)
+            builder.cylinder(SIGN_YELLOW, (x, ys[0], z - 0.05), (x, ys[-1], z - 0.05), 0.035, sides=sides)
 
 
 def _tower(builder: MeshBuilder) -> None:
@@ -261,26 +264,95 @@ def _court(builder: MeshBuilder) -> None:
         keys = [[(side * 15, -2.6), (side * 9.2, -2.6), (side * 9.2, 2.6), (side * 15, 2.6)] for side in (-1, 1)]
         _lines(builder, keys, 0.1)
     for side in (-1, 1):
-        x = side * 14.6
-        if builder.detail == FAR:
-            builder.sheet(SIGN_WHITE, [(x, -0.9, 2.9), (x, 0.9, 2.9), (x, 0.9, 4.0), (x, -0.9, 4.0)])
-            builder.sheet(DARK_STEEL, [(x, -0.12, 0), (x, 0.12, 0), (x, 0, 3.1)])
-            continue
-        builder.cylinder(DARK_STEEL, (x, 0, 0), (x, 0, 3.3), 0.09, sides=10)
-        board = x - side * 0.7
-        builder.beam(DARK_STEEL, (x, 0, 3.2), (board, 0, 3.4), 0.1, 0.1)
-        builder.box(SIGN_WHITE, (board - 0.03, -0.9, 2.95), (board + 0.03, 0.9, 4.0))
-        for face in (-1, 1):
-            for bar in line([(-0.3, 3.1), (-0.3, 3.55), (0.3, 3.55), (0.3, 3.1), (-0.3, 3.1)], 0.06):
-                plane = Plane((board + face * 0.042, 0, 0), (0, float(face), 0))
-                builder.decal(SIGN_RED, plane.points(bar))
-        builder.torus(plain(0.95, 0.42, 0.08), (board - side * 0.3, 0, 3.05), 0.24, 0.025, around=14, sides=5)
-        builder.beam(plain(0.95, 0.42, 0.08), (board, 0, 3.05), (board - side * 0.08, 0, 3.05), 0.1, 0.04)
+        _hoop(builder, side)
+
+
+def _hoop(builder: MeshBuilder, side: int) -> None:
+    x = side * 14.6
+    if builder.detail == FAR:
+        builder.sheet(SIGN_WHITE, [(x, -0.9, 2.9), (x, 0.9, 2.9), (x, 0.9, 4.0), (x, -0.9, 4.0)])
+        builder.sheet(DARK_STEEL, [(x, -0.12, 0), (x, 0.12, 0), (x, 0, 3.1)])
+        return
+    builder.cylinder(DARK_STEEL, (x, 0, 0), (x, 0, 3.3), 0.09, sides=10)
+    board = x - side * 0.7
+    builder.beam(DARK_STEEL, (x, 0, 3.2), (board, 0, 3.4), 0.1, 0.1)
+    builder.box(SIGN_WHITE, (board - 0.03, -0.9, 2.95), (board + 0.03, 0.9, 4.0))
+    for face in (-1, 1):
+        for bar in line([(-0.3, 3.1), (-0.3, 3.55), (0.3, 3.55), (0.3, 3.1), (-0.3, 3.1)], 0.06):
+            plane = Plane((board + face * 0.042, 0, 0), (0, float(face), 0))
+            builder.decal(SIGN_RED, plane.points(bar))
+    builder.torus(plain(0.95, 0.42, 0.08), (board - side * 0.3, 0, 3.05), 0.24, 0.025, around=14, sides=5)
+    builder.beam(plain(0.95, 0.42, 0.08), (board, 0, 3.05), (board - side * 0.08, 0, 3.05), 0.1, 0.04)
 
 
 def _lawn(builder: MeshBuilder, variant: int) -> None:
     """Nothing: grass is ground."""
     del builder, variant
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Piece:
+    """A piece of a playground, about its own middle.
+
+    Attributes:
+        model: What it looks like.
+        radius_m: Of the room that it needs.
+    """
+
+    model: Model
+    radius_m: float
+
+
+@lru_cache(maxsize=4)
+def playground_pieces(variant: int) -> tuple[Piece, ...]:
+    """Return what the playgrounds of a variant are made of, the most important first."""
+
+    def frame(builder: MeshBuilder, chosen: int) -> None:
+        _climbing_frame(builder, chosen)
+
+    def pit(builder: MeshBuilder, chosen: int) -> None:
+        del chosen
+        _sandpit(builder)
+
+    def seesaw(builder: MeshBuilder, chosen: int) -> None:
+        del chosen
+        _seesaw(builder)
+
+    def rocker(builder: MeshBuilder, chosen: int) -> None:
+        _rocker(builder, 0.0, 0.0, (_TOY_GREEN, SIGN_BLUE)[chosen])
+
+    return (
+        Piece(_piece(frame, variant, (5.0, 3.6 if variant == 0 else 2.8)), 2.3),
+        Piece(_piece(pit, 0, (-4.9, -3.8)), 3.1),
+        Piece(_piece(rocker, 0, (0.0, 0.0)), 0.9),
+        Piece(_piece(seesaw, 0, (-4.95, 4.3)), 1.9),
+        Piece(_piece(rocker, 1, (0.0, 0.0)), 0.9),
+    )
+
+
+@lru_cache(maxsize=2)
+def pitch_end(variant: int) -> Model:
+    """Return a goal (of even variants) or a hoop; the pitch lies behind it."""
+
+    def end(builder: MeshBuilder, chosen: int) -> None:
+        turned = MeshBuilder(detail=builder.detail)
+        (_goal, _hoop)[chosen](turned, 1)
+        builder.add(turned, heading_rad=-math.pi / 2.0)
+
+    return _piece(end, variant % 2, (0.0, 14.75))
+
+
+def _piece(make: Callable[[MeshBuilder, int], None], variant: int, middle: tuple[float, float]) -> Model:
+    """Return a part of a playground or pitch, moved from where it is there to the origin."""
+
+    def moved(builder: MeshBuilder, chosen: int) -> None:
+        # The coarsest level of the whole is no level of its parts.
+        own = MeshBuilder(detail=min(builder.detail, 2))
+        make(own, chosen)
+        builder.add(own, (-middle[0], -middle[1], 0.0))
+
+    whole = Maker(moved, variants=2, fits="none", scaling="none")
+    return whole.model(variant, (1.0, 1.0, 1.0))
 
 
 MAKERS = {

@@ -165,11 +165,11 @@ def add_display(builder: MeshBuilder, colours: list[Surface], half: float) -> No
 
 def add_blade(builder: MeshBuilder, board: Surface, *, x: float, z: float, size: float = 0.42) -> tuple[Plane, Plane]:
     """Add a sign that stands out from the wall; returns the planes on its two faces, v = 0 at its middle."""
-    builder.box(board, (x - 0.03, 0.08, z - size / 2), (x + 0.03, 0.5, z + size / 2))
+    builder.box(board, (x - 0.03, 0.08, z - size / 2), (x + 0.03, 0.48, z + size / 2))
     right, left = facing_side(1.0), facing_side(-1.0)
     return (
-        Plane((x + 0.042, 0.29, z), right.right, right.up),
-        Plane((x - 0.042, 0.29, z), left.right, left.up),
+        Plane((x + 0.042, 0.28, z), right.right, right.up),
+        Plane((x - 0.042, 0.28, z), left.right, left.up),
     )
 
 
@@ -210,7 +210,7 @@ def draw_mug(builder: MeshBuilder, plane: Plane, centre: tuple[float, float], si
     for bar in line([(0.18, 0.16), (0.42, 0.12), (0.42, -0.2), (0.18, -0.26)], 0.09):
         builder.decal(ink, plane.points(np.array([u, v]) + k * bar))
     for at in (-0.24, -0.05, 0.14):
-        builder.decal(SIGN_WHITE, plane.points(disc(u + at * k, v + 0.28 * k, 0.15 * k, sides=8)))
+        builder.decal(SIGN_WHITE, plane.nearer(0.01).points(disc(u + at * k, v + 0.28 * k, 0.15 * k, sides=8)))
 
 
 def draw_person(

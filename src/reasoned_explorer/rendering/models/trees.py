@@ -106,8 +106,12 @@ def _broadleaf(builder: MeshBuilder, kind: _Kind) -> None:
         keep = np.arange(0, kind.clumps, 2)
         cores = Crown(cores.centres[keep], cores.radii[keep] * (2.2 if kind.airy else 1.75), crown.middle, crown.reach)
     add_cores(builder, kind.leaves, cores, rng, fine=False)
-    count, size = ((570 if kind.airy else 590, 0.42), (115, 0.66), (22, 0.9))[builder.detail]
-    add_tufts(builder, kind.leaves, crown, rng, count=count, size_m=size * (0.9 if kind.airy else 1.0))
+    count, size = ((270, 0.45), (115, 0.66), (22, 0.9))[builder.detail]
+    thin = 0.9 if kind.airy else 1.0
+    add_tufts(builder, kind.leaves, crown, rng, count=count, size_m=size * thin)
+    if builder.detail == 0:
+        # Sprays around the masses: seen from below, they are what the outline is made of.
+        add_tufts(builder, kind.leaves, crown, rng, count=300, size_m=0.29 * thin, spread=1.06, slim=0.75)
 
 
 def _far_crown(builder: MeshBuilder, kind: _Kind) -> None:
@@ -155,7 +159,7 @@ def _birch_marks(builder: MeshBuilder, path: FloatArray, radii: FloatArray, rng:
 def _spruce(builder: MeshBuilder, seed: int) -> None:
     """A straight stem with fronds that droop, longer from tier to tier downward."""
     rng = _rng("spruce", seed)
-    wide, low = 2.35, 0.75
+    wide, low = 1.95, 0.7
     builder.cylinder(BARK, (0, 0, 0), (0, 0, 2.0), 0.19, 0.16, sides=8, capped=False)
     if builder.detail == FAR:
         add_far_crown(builder, _SPRUCE.shaded(0.75), [(wide, low), (0.5 * wide, 4.0), (0.0, 9.0)])
@@ -170,7 +174,7 @@ def _spruce(builder: MeshBuilder, seed: int) -> None:
         share = (tier + 0.3) / tiers
         height = low + 0.35 + (8.55 - low) * share
         length = wide * (1.0 - share) ** 0.85 + 0.22
-        fronds = max(5, round((18, 9, 6)[builder.detail] * (1.0 - 0.6 * share)))
+        fronds = max(5, round((20, 9, 6)[builder.detail] * (1.0 - 0.6 * share)))
         for frond in range(fronds):
             angle = 2 * math.pi * (frond + 0.5 * (tier % 2) + rng.uniform(-0.3, 0.3)) / fronds
             _frond(corners, angle, height + rng.uniform(-0.12, 0.12), length * rng.uniform(0.78, 1.08), fronds)
@@ -187,7 +191,7 @@ def _spruce(builder: MeshBuilder, seed: int) -> None:
 def _frond(corners: list[FloatArray], angle: float, height: float, length: float, fronds: int) -> None:
     """A branch with needles: two triangles that meet in a spine, their edges lower than it."""
     out = np.array([math.cos(angle), math.sin(angle), 0.0])
-    side = np.array([-out[1], out[0], 0.0]) * length * math.tan(math.pi / max(fronds, 6)) * 0.8
+    side = np.array([-out[1], out[0], 0.0]) * length * math.tan(math.pi / max(fronds, 6)) * 0.66
     root = np.array([0, 0, height]) + 0.1 * out
     tip = np.array([0, 0, height - 0.42 * length - 0.08]) + length * out
     hand = np.array([0, 0, height - 0.36 * length - 0.12]) + 0.62 * length * out

@@ -1,9 +1,12 @@
 """What water comes out of: fire hydrants, fountains, drinking fountains."""
 
 import math
+from functools import lru_cache
 
 import numpy as np
 
+from reasoned_explorer.rendering.lettering import Plane, write
+from reasoned_explorer.rendering.mesh import Model
 from reasoned_explorer.rendering.mesh_builder import FAR, MeshBuilder, Surface
 from reasoned_explorer.rendering.models.maker import Maker
 from reasoned_explorer.rendering.models.palette import (
@@ -161,6 +164,21 @@ def _drinking_water(builder: MeshBuilder, variant: int) -> None:
     builder.lathe(WATER, [(0.22, 0.47), (0.22, 0.485)], (0, 0.03, 0))
     builder.tube(CHROME, [(0, -0.05, 0.76), (0, 0.04, 0.78), (0, 0.08, 0.72)], 0.022)
     builder.cylinder(SPRAY, (0, 0.08, 0.74), (0, 0.08, 0.47), 0.012, 0.018, sides=5)
+
+
+@lru_cache(maxsize=1)
+def hydrant_lid() -> Model:
+    """Return the lid of a hydrant below the ground: an oval iron lid with an H, in a ring of red paint."""
+
+    def make(builder: MeshBuilder, variant: int) -> None:
+        del variant
+        builder.lathe(_RED, [(0.36, 0.0), (0.35, 0.016)], sides=20, stretch=(1.0, 0.8))
+        builder.lathe(IRON, [(0.26, 0.0), (0.24, 0.035)], sides=16, stretch=(1.0, 0.72))
+        if builder.detail < FAR:
+            flat = Plane((0.0, 0.0, 0.046), (-1.0, 0.0, 0.0), (0.0, -1.0, 0.0))
+            write(builder, _YELLOW, "H", flat, centre=(0.0, 0.0), height_m=0.2)
+
+    return Maker(make, scaling="none", fits="none").model(0, (0.7, 0.6, 0.05))
 
 
 MAKERS = {

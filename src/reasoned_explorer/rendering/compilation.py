@@ -1,0 +1,140 @@
+"""Compiles parts of the renderer: ``python -m reasoned_explorer.rendering.compilation shading``.
+
+Kernels are called as `Renderer` calls them, on next to nothing, so that numba compiles them for the same types.
+"""
+
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+
+import numba.core.event
+import numpy as np
+
+from reasoned_explorer.geometry import Pose
+from reasoned_explorer.model import Camera
+from reasoned_explorer.rendering.compiling import cache_folder
+from reasoned_explorer.rendering.conditions import Conditions
+from reasoned_explorer.rendering.ground import GroundMap
+from reasoned_explorer.rendering.light import developing_curve, light_of, sun_direction
+from reasoned_explorer.rendering.material import Material
+from reasoned_explorer.rendering.mesh import Mesh, Model
+from reasoned_explorer.rendering.mipmaps import ground_looks_of, surfaces_of, textures_of
+from reasoned_explorer.rendering.projection import projection_of
+from reasoned_explorer.rendering.raster_kernels import SKY, draw, read_out
+from reasoned_explorer.rendering.readiness import is_kept, keep
+from reasoned_explorer.rendering.room import Room, new_canvas
+from reasoned_explorer.rendering.scene import FIRST_BUILDING_ID, Placed, Scene
+from reasoned_explorer.rendering.shading_kernels import shade
+from reasoned_explorer.rendering.shadows import ShadowTiles
+
+_SIDE = 8
+_VIEW = projection_of(Pose(0.0, 0.0, 500.0), Camera(_SIDE, _SIDE))
+
+
+def compile_part(part: str) -> None:
+    """Compile a part (see `reasoned_explorer.rendering.readiness.SHARES`), or read it from disk if it is there."""
+    _PARTS[part](_scene())
+
+
+def _scene() -> Scene:
+    """Return a scene of one triangle."""
+    triangle = Mesh(
+        np.array([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 1.0)], np.float32),
+        np.array([(0, 1, 2)], np.int32),
+        np.full((1, 3, 3), 3.0**-0.5, np.float32),
+        np.zeros((1, 3, 2), np.float32),
+        np.ones((1, 3), np.float32),
+        np.zeros(1, np.uint8),
+    )
+    ground = GroundMap(
+        np.zeros((_SIDE, _SIDE), np.uint8),
+        np.array([0.0, 0.0, 1.0]),
+        np.zeros(1, np.uint8),
+        np.ones((1, 3), np.float32),
+    )
+    thing = Placed(Model((triangle,), (1.0, 1.0, 1.0)), FIRST_BUILDING_ID, (0.0, 0.0, 0.0))
+    return Scene.of_things([thing], ground, np.array([0, 1, 2], np.uint8))
+
+
+def _compile_raster(scene: Scene) -> None:
+    canvas, room = new_canvas(_SIDE, _SIDE), Room(scene, 1)
+    draw(scene.library, scene.instances, scene.cells, _VIEW, 1.0, False, canvas, room.scratch)  # noqa: FBT003 - a kernel
+    depth_m, instances = np.empty((_SIDE, _SIDE), np.float32), np.empty((_SIDE, _SIDE), np.int32)
+    read_out(canvas, scene.instances.ids, _VIEW, depth_m, instances)
+
+
+def _compile_shading(scene: Scene) -> None:
+    shadows = ShadowTiles(scene, sun_direction(Conditions()))
+    room = Room(scene, shadows.wanted_size)
+    canvas = new_canvas(_SIDE, _SIDE)
+    canvas.owners[:], canvas.triangles[:], canvas.nearness[:] = SKY, -1, 0.0
+    textures = textures_of(np.ones((len(Material), 2, 2, 3), np.float32), np.ones(len(Material), np.float32))
+    shade(
+        surfaces_of(scene.library, scene.instances),
+        ground_looks_of(scene.ground, textures),
+        textures,
+        light_of(Conditions()),
+        shadows.maps,
+        _VIEW,
+        canvas,
+        developing_curve(),
+        room.wanted,
+        *room.samples,
+        np.empty((_SIDE, _SIDE, 3), np.uint8),
+    )
+
+
+def _compile_shadows(scene: Scene) -> None:
+    shadows = ShadowTiles(scene, sun_direction(Conditions()))
+    wanted = np.zeros(shadows.wanted_size, np.uint8)
+    wanted[:2] = 1
+    shadows.make(wanted)
+
+
+_PARTS: Mapping[str, Callable[[Scene], None]] = {
+    "raster": _compile_raster,
+    "shading": _compile_shading,
+    "shadows": _compile_shadows,
+}
+
+
+class _Teller(numba.core.event.Listener):  # type: ignore[misc]
+    """Says a line for each function that was compiled."""
+
+    def on_start(self, event: numba.core.event.Event) -> None:
+        pass
+
+    def on_end(self, event: numba.core.event.Event) -> None:
+        sys.stdout.write(f"{event.data['dispatcher'].py_func.__name__}\n")
+        sys.stdout.flush()
+
+
+@contextmanager
+def _alone(part: str) -> Iterator[None]:
+    """One process at a time compiles a part; the others then find it on disk. Where that cannot be, all do."""
+    folder = cache_folder()
+    try:
+        import fcntl
+    except ImportError:
+        folder = None
+    if folder is None:
+        yield
+        return
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / f"renderer-{part}.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+def main() -> None:
+    """Compile the parts that the command line names and that are not there yet."""
+    numba.core.event.register("numba:compile", _Teller())
+    for part in sys.argv[1:]:
+        with _alone(part):
+            if not is_kept(part):
+                compile_part(part)
+                keep(part)
+
+
+if __name__ == "__main__":
+    main()
