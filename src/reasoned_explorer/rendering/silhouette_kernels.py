@@ -33,9 +33,7 @@ def place_on_sheet(library: Library, instances: Instances, i: int, view: Project
     """Set the rectangle that an instance may cover in a view; return its greatest nearness, 0 where it is not in it."""
     _matrix_of(instances, i, view, sheet.matrix)
     prototype, rectangle = int(instances.prototypes[i]), sheet.rectangle
-    nearness, first_x, last_x, first_y, last_y = _bound(
-        library.boxes, prototype, sheet.matrix, view.width, view.height
-    )
+    nearness, first_x, last_x, first_y, last_y = _bound(library.boxes, prototype, sheet.matrix, view.width, view.height)
     rectangle[0, 0], rectangle[0, 1], rectangle[0, 2], rectangle[0, 3] = first_x, last_x, first_y, last_y
     return nearness
 
