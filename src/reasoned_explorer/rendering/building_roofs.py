@@ -14,9 +14,9 @@ from reasoned_explorer.rendering.patches import Patch, lifted, plan_uvs, quads, 
 PARAPET_M, _PARAPET_WIDTH_M = 0.55, 0.25
 #: How far gabled roofs reach beyond their walls, and how thick they are, metres.
 _EAVES_M, _VERGE_M, _THICK_M = 0.4, 0.25, 0.16
-#: Of a church's height, how much its nave has where it has a tower. A map's height is that of the highest point, and a
-#: nave as high as its spire looks like no church. Lines of sight take the whole footprint to be as high as the map says:
-#: what they call hidden behind the upper part of a church may show above the nave, which matters to flyers alone.
+#: Of a church's height, how much its nave has where it has a tower. A map's height is that of the highest point, and
+#: a nave as high as its spire looks like no church. Lines of sight take the whole footprint to be as high as the map
+#: says: what they call hidden behind the upper part of a church may show above the nave, which matters to flyers alone.
 _NAVE = 0.56
 
 
