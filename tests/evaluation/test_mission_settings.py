@@ -25,6 +25,7 @@ WRONG = MissionSettings(
     success_radius_m=math.nan,
     seed=-1,
     agent="exploder",
+    eyes="pixel",
 )
 
 
@@ -42,9 +43,9 @@ def test_everything_that_is_wrong_with_a_mission_is_told_at_once() -> None:
         Mission("Find me a bench near a blorp", courtyard(), WRONG, start=Pose(math.nan, 0.0))
     text = str(raised.value)
     for word in ("blorp", "llm-rtt", "did you mean llm-rrt", "embeded", "dreamer", "nosy", "dron", "gpt-2024", "virtul",
-                 "exploder", "success_radius_m is nan", "seed is -1", "finite coordinates"):  # fmt: skip
+                 "exploder", "did you mean pixels", "success_radius_m is nan", "seed is -1", "finite coordinates"):  # fmt: skip
         assert word in text
-    assert len(raised.value.faults) == 12
+    assert len(raised.value.faults) == 13
 
 
 def test_a_single_fault_is_an_error_of_its_own_kind() -> None:

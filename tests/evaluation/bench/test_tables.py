@@ -128,6 +128,8 @@ def test_notes_tell_what_was_really_done() -> None:
     for captioner, said in (
         ("simulated captioner (perfect)", "a simulated captioner’s, without error"),
         ("simulated captioner (noisier)", "the error rates of “noisier” are assumed"),
+        ("simulated captioner (perfect) through pixels", "a simulated captioner’s, without error"),
+        ("simulated captioner (noisy) through pixels", "It sees through pixels"),
     ):
         seen = [replace(row, captioner=captioner) for row in rows]
         assert any(said in line for line in notes_of(seen, total=4).once)
