@@ -43,7 +43,8 @@ def test_everything_that_is_wrong_with_a_mission_is_told_at_once() -> None:
         Mission("Find me a bench near a blorp", courtyard(), WRONG, start=Pose(math.nan, 0.0))
     text = str(raised.value)
     for word in ("blorp", "llm-rtt", "did you mean llm-rrt", "embeded", "dreamer", "nosy", "dron", "gpt-2024", "virtul",
-                 "exploder", "did you mean pixels", "success_radius_m is nan", "seed is -1", "finite coordinates"):  # fmt: skip
+                 "exploder", "did you mean pixels", "success_radius_m is nan", "seed is -1",
+                 "finite coordinates"):  # fmt: skip
         assert word in text
     assert len(raised.value.faults) == 13
 

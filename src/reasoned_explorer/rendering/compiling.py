@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from numba import njit
-from numba.core.registry import cpu_target
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -41,12 +40,6 @@ def cache_folder() -> Path | None:
     """Return where compiled code is kept between processes, or None where nothing is compiled."""
     compiled: Any = njit(cache=True)(_anything)
     return Path(compiled.stats.cache_path) if hasattr(compiled, "stats") else None
-
-
-@lru_cache(maxsize=1)
-def processor() -> str:
-    """Return what code is compiled for: another processor may also round sines otherwise."""
-    return str(cpu_target.target_context.codegen().magic_tuple())
 
 
 def _anything() -> None:

@@ -16,9 +16,10 @@ from functools import lru_cache
 from pathlib import Path
 
 import numba
+from numba.core.registry import cpu_target
 
 from reasoned_explorer.model.stopping import stop_if_asked
-from reasoned_explorer.rendering.compiling import cache_folder, processor
+from reasoned_explorer.rendering.compiling import cache_folder
 
 #: Told, now and then, what takes long.
 Progress = Callable[[str], None]
@@ -163,7 +164,8 @@ def _note_of(folder: Path, part: str) -> Path:
 def _fingerprint() -> str:
     """Of all that decides whether numba can use again what it keeps: itself, the processor, the sources."""
     found = hashlib.sha256()
-    found.update(f"{sys.version}\n{numba.__version__}\n{processor()}\n".encode())
+    processor = cpu_target.target_context.codegen().magic_tuple()
+    found.update(f"{sys.version}\n{numba.__version__}\n{processor}\n".encode())
     for source in sorted(Path(__file__).parent.glob("*.py")):
         state = source.stat()
         found.update(f"{source.name} {state.st_size} {state.st_mtime_ns}\n".encode())
