@@ -1,5 +1,6 @@
 """`rex run --minds openai:…` and `rex minds check`, against a server of this machine that is no model (a fake)."""
 
+import json
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -47,6 +48,8 @@ def test_a_mission_with_a_model_is_measured_and_replayed_without_it_bit_for_bit(
         assert code == 1, shown
         assert "[openai:fake]" in shown
         assert "measured" in shown
+        assert "tokens sent" in shown
+        assert "have no answer" not in shown
         url = server.base_url
     # The server is gone; so is the key.
     again_code, again = _run("--base-url", url, "--replay", "calls.tape", out="again")
@@ -170,6 +173,34 @@ def test_a_model_that_fails_costs_answers_and_never_a_mission() -> None:
     for step in record.steps:
         for call in step.calls:
             assert KEY not in (call.fault or "")
+
+
+def test_calls_that_are_lost_are_told_with_what_the_others_took() -> None:
+    with StubServer(Behaviour(answer=sober, script=("ok",) * 20 + ("filtered",) * 40)) as server:
+        code, shown = _run("--base-url", server.base_url, "--t-max", "1")
+    assert code in {0, 1}, shown
+    assert "lost     " in shown
+    assert "calls have no answer: " in shown
+    assert "filtered" in shown
+
+
+@pytest.mark.parametrize("mission", ["null", "7", '"x"', "[]"])
+def test_a_tape_that_says_of_no_mission_is_refused_in_words(mission: str, server: StubServer) -> None:
+    assert _run("--base-url", server.base_url, "--t-max", "1")[0] == 1
+    tape = Path("run/calls.tape")
+    head, _, rest = tape.read_text().partition("\n")
+    header = json.loads(head)
+    header["about"]["mission"] = json.loads(mission)
+    tape.write_text(json.dumps(header) + "\n" + rest)
+    code, shown = _run("--base-url", server.base_url, "--replay", "run/calls.tape", out="again")
+    assert code == 2, shown
+    assert "says of no mission" in shown
+
+
+def test_an_empty_address_is_not_taken_for_openais_own() -> None:
+    code, shown = _run("--base-url", "")
+    assert code == 2, shown
+    assert "the base URL is empty" in shown
 
 
 def test_a_key_is_written_nowhere(tmp_path: Path) -> None:

@@ -73,6 +73,10 @@ def endpoint_at(base_url: str | None = None, *, key_variable: str | None = None)
     Raises:
         SettingsError: If the address is none, or the key that OpenAI or a named variable should hold is missing.
     """
+    if base_url is not None and not base_url.strip():
+        # An unset variable of a shell, say: calls must not go elsewhere, where they may be paid.
+        fault = Fault("the base URL is empty", "an address such as http://localhost:8000/v1", "or leave it out")
+        raise SettingsError("endpoint", [fault])
     url = (base_url or os.environ.get("OPENAI_BASE_URL") or OPENAI_URL).strip().rstrip("/")
     faults = []
     try:

@@ -13,7 +13,7 @@ def agree_to_send(model: str, places: Sequence[str], *, yes: bool) -> None:
     """Say once that pictures of real places are to be sent to another machine, and ask.
 
     Args:
-        model: Who is sent them, with where it is.
+        model: Who is sent them.
         places: Of which there are pictures.
         yes: It was agreed beforehand (``--yes``); it is still said.
 

@@ -109,7 +109,7 @@ class ModelOptions:
         (known,) = desk.prepare([captioner])
         if known.model.is_local:
             return False
-        agree_to_send(known.model.fingerprint, places, yes=self.yes)
+        agree_to_send(known.model.fingerprint.partition(" form ")[0], places, yes=self.yes)
         desk.pictures_may_leave = True
         return True
 
@@ -145,7 +145,11 @@ class ModelOptions:
                 yield
         else:
             with made_for(tape), desk.record(tape, about):
-                yield
+                try:
+                    yield
+                except KeyboardInterrupt:
+                    complain(f"its calls are kept: the same command with --resume {tape} and a new --out goes on")
+                    raise
 
 
 @contextmanager

@@ -2,8 +2,10 @@
 
 import math
 import textwrap
+from collections import Counter
 from collections.abc import Iterator
 
+from reasoned_explorer.calls.chat import is_model_name
 from reasoned_explorer.geometry import GeoOrigin
 from reasoned_explorer.model import LegOutcome
 from reasoned_explorer.model.record import EpisodeRecord, MissionHeader, MissionSummary, StepRecord, ViewRecord
@@ -119,12 +121,28 @@ def summary_lines(record: EpisodeRecord) -> Iterator[str]:
     spent_s, calls = summary.ct_s + summary.tt_s, ", ".join(f"{n} {role}" for role, n in summary.calls.items())
     yield f"  time     CT {summary.ct_s:.0f} s ({record.header.ct_label}) + TT {summary.tt_s:.0f} s = {_clock(spent_s)}"
     yield f"  calls    {calls or 'none'}"
+    yield from _model_lines(record)
     yield (
         f"  scores   SR {summary.success:d}  OSR {summary.oracle_success:d}  SPL {summary.spl:.2f}"
         f"  CASR {summary.casr:.2f}   [{record.header.minds}]"
     )
     if summary.collisions:
         yield f"  bumps    {len(summary.collisions)}: {_clipped(', '.join(summary.collisions))}"
+
+
+def _model_lines(record: EpisodeRecord) -> Iterator[str]:
+    """Yield what the calls of real models took, and how many of them were lost; nothing where there were none."""
+    calls = [call for step in record.steps for call in step.calls if is_model_name(call.model)]
+    if not calls:
+        return
+    sent, got = sum(call.tokens_in for call in calls), sum(call.tokens_out for call in calls)
+    least = "at least " if any(call.usd is None for call in calls) else ""
+    usd = math.fsum(call.usd or 0.0 for call in calls)
+    faults = Counter(call.fault.partition(":")[0] for call in calls if call.fault is not None)
+    lost = ", ".join(f"{count} {kind}" for kind, count in faults.most_common())
+    yield f"  models   {len(calls)} calls, {sent:,} tokens sent and {got:,} got, {least}${usd:.4f}"
+    if lost:
+        yield f"  lost     {faults.total()} calls have no answer: {_clipped(lost)}"
 
 
 def _outcome_lines(summary: MissionSummary) -> Iterator[str]:

@@ -269,9 +269,12 @@ class ModelDesk:
         tape = self._player or self._past
         if tape is None:
             return
+        taped = tape.about.get("mission", {})
+        if not isinstance(taped, Mapping):
+            raise RecordError("replay", [Fault(f"{tape.path} says of no mission", "a tape that --record wrote")])
         faults = [
             Fault(f"{name} is {here!r:.80}", f"{there!r:.80}, as on the tape")
-            for name, here, there in _differences(mission, tape.about.get("mission", {}))
+            for name, here, there in _differences(mission, taped)
         ]
         if faults:
             raise RecordError("replay", faults)
