@@ -20,9 +20,9 @@ def test_without_limits_everything_may_begin() -> None:
 def test_money_that_is_spent_lets_no_call_begin() -> None:
     budget = Budget(usd=0.5)
     assert budget.begin() is None
-    budget.end(0.3)
+    budget.end(0.25)
     assert budget.begin() is None
-    budget.end(0.2)
+    budget.end(0.25)
     assert budget.spent_usd == pytest.approx(0.5)
     assert budget.begin() == "the budget of 0.5 US dollars is spent (0.5000)"
     assert budget.denied == "the budget of 0.5 US dollars is spent (0.5000)"
@@ -32,8 +32,15 @@ def test_calls_under_way_count_as_dear_as_the_dearest() -> None:
     budget = Budget(usd=1.0)
     budget.begin()
     budget.end(0.3)
-    assert [budget.begin() for _ in range(3)] == [None, None, None]  # 0.3 and up to 0.9: a third might begin at 0.9
-    assert "3 calls under way" in (budget.begin() or "")
+    assert [budget.begin() for _ in range(2)] == [None, None]  # 0.3 and up to 0.6 more: a third might be too much
+    assert "2 calls under way" in (budget.begin() or "")
+
+
+def test_the_first_calls_go_by_what_they_may_well_cost() -> None:
+    budget = Budget(usd=1.0)
+    assert [budget.begin(0.4), budget.begin(0.4)] == [None, None]
+    assert "2 calls under way" in (budget.begin(0.4) or "")
+    assert Budget(usd=0.3).begin(0.4) == "the budget of 0.3 US dollars is spent (0.0000, a call may cost 0.4000)"
 
 
 def test_minutes_are_of_real_time() -> None:

@@ -367,16 +367,16 @@ def test_faults_are_never_cached_and_samples_only_if_wanted(tmp_path: Path) -> N
 
 
 def test_when_the_budget_is_spent_no_new_call_begins_and_the_mission_is_told_to_end(tmp_path: Path) -> None:
-    model, budget = FakeModel(), Budget(usd=0.035)
+    model, budget = FakeModel(), Budget(usd=0.045)
 
     async def one_by_one(caller: Caller, _: Clock) -> list[str | None]:
         return [(await caller.ask(question(step))).fault for step in range(6)]
 
     with TapeRecorder(tmp_path / "tape") as tape:
         faults, ledger, caller = run(model, one_by_one, budget=budget, tape=tape)
-    assert len(model.asked) == 4  # 0.01 each
+    assert len(model.asked) == 4  # 0.01 each: a fifth would be too much
     assert faults[:4] == [None] * 4
-    assert faults[4] == faults[5] == "the budget of 0.035 US dollars is spent (0.0400)"
+    assert faults[4] == faults[5] == "the budget of 0.045 US dollars is spent (0.0400, a call may cost 0.0100)"
     assert caller.end == (MissionEnd.BUDGET_SPENT, faults[4])
     assert end_of([Caller(model, clock=MixedClock(), ledger=Ledger()), caller])() == caller.end
     assert [call.latency_s for call in ledger.calls[4:]] == [0.0, 0.0]

@@ -84,8 +84,13 @@ class Budget:
         """What is spent so far, US dollars; calls of unknown cost as dear as the dearest."""
         return self._sum.total()
 
-    def begin(self) -> str | None:
-        """Let a call begin, which must `end`; or return why it may not."""
+    def begin(self, most_usd: float = 0.0) -> str | None:
+        """Let a call begin, which must `end`; or return why it may not.
+
+        Args:
+            most_usd: What it may well cost, US dollars: the first calls of a run have none before them to go by.
+        """
+        self._dearest_usd = max(self._dearest_usd, most_usd)
         reason = self._reason()
         if reason is None:
             self._out += 1
@@ -120,9 +125,11 @@ class Budget:
             return f"the budget of {self.usd:g} US dollars cannot be kept: {self._unpriced}"
         spent_usd = self.spent_usd
         out = self._out * self._sharers
-        if spent_usd + out * self._dearest_usd < self.usd:
+        if spent_usd < self.usd and spent_usd + (out + 1) * self._dearest_usd <= self.usd:
             return None
         under_way = f", {out} calls under way" if out else ""
+        if spent_usd < self.usd and not out:
+            under_way = f", a call may cost {self._dearest_usd:.4f}"
         return f"the budget of {self.usd:g} US dollars is spent ({spent_usd:.4f}{under_way})"
 
 

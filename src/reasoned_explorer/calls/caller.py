@@ -8,6 +8,7 @@ from reasoned_explorer.calls.budget import Budget
 from reasoned_explorer.calls.cache import AnswerCache, StoredAnswer
 from reasoned_explorer.calls.chat import ChatAnswer, ChatModel, ChatRequest
 from reasoned_explorer.calls.ledger import CallRecord, Ledger
+from reasoned_explorer.calls.prices import Price
 from reasoned_explorer.calls.secrets import scrubbed
 from reasoned_explorer.calls.stored import RequestParts, parts_of
 from reasoned_explorer.calls.tape import Miss, Outcome, TapedCall, TapePlayer, TapeRecorder
@@ -15,6 +16,8 @@ from reasoned_explorer.clock import Clock
 from reasoned_explorer.model.errors import PartError
 from reasoned_explorer.model.record import MissionEnd
 
+#: What a picture may well take.
+_TOKENS_A_PICTURE = 1000
 #: The fault of a call that nobody waited for.
 CANCELLED = "cancelled"
 #: A replayed call that was cancelled then is cancelled at the same time now. If it is not by so much later, seconds,
@@ -98,7 +101,7 @@ class Caller:
         stored = None if cache is None else cache.get(asked.parts.digest)
         if stored is not None:
             return await self._cached(asked, stored)
-        refusal = None if self._budget is None else self._budget.begin()
+        refusal = None if self._budget is None else self._budget.begin(self._most_usd(request))
         if refusal is not None:
             self._must_end(MissionEnd.BUDGET_SPENT, refusal)
             return self._close(asked, ChatAnswer(fault=refusal), 0.0, outcome=Outcome.DENIED)
@@ -106,6 +109,14 @@ class Caller:
         if cache is not None and answer.fault is None:
             cache.put(asked.parts.digest, StoredAnswer(answer, seconds), model=self.model.name, prompt=request.prompt)
         return self._close(asked, answer, seconds)
+
+    def _most_usd(self, request: ChatRequest) -> float:
+        """Return what a call may well cost: three letters a token, and an answer of full length."""
+        price: Price | None = getattr(self.model, "price", None)
+        if price is None:
+            return 0.0
+        letters = len(request.system) + len(request.user)
+        return price.usd(letters // 3 + _TOKENS_A_PICTURE * len(request.images), request.max_tokens)
 
     async def _live(self, asked: _Asked) -> tuple[ChatAnswer, float]:
         come: list[ChatAnswer] = []
