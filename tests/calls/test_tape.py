@@ -20,8 +20,14 @@ from tests.calls.fakes import FakeModel, question
 
 def _call(number: int, **changes: Any) -> TapedCall:
     parts = parts_of("fake", question(number))
-    values = {"outcome": Outcome.ANSWERED, "seconds": 0.1 + 0.2, "answer": ChatAnswer(f"answer {number}")}
-    return TapedCall(number, "evaluator", (number,), parts.digest, parts, **{**values, **changes})
+    values = {
+        "digest": parts.digest,
+        "parts": parts,
+        "outcome": Outcome.ANSWERED,
+        "seconds": 0.1 + 0.2,
+        "answer": ChatAnswer(f"answer {number}"),
+    }
+    return TapedCall(number, "evaluator", (number,), **{**values, **changes})
 
 
 def _tape(path: Path, count: int) -> Path:
@@ -156,7 +162,7 @@ def test_a_mission_that_was_broken_off_goes_on_where_it_was_and_asks_nothing_twi
     whole = TapePlayer(path)
     assert whole.about == {"goal": "a bench"}
     assert whole.complete
-    assert [(call.asked, call.outcome) for call in whole.calls] == [(n, Outcome.ANSWERED) for n in (0, 1, 2, 4, 5, 6)]
+    assert [(call.asked, call.outcome) for call in whole.calls] == [(n, Outcome.ANSWERED) for n in range(6)]
     assert not list(tmp_path.glob("*.half"))
 
 

@@ -154,7 +154,7 @@ def test_what_cannot_be_is_told_before_anything_is_made(arguments: list[str], sa
 
 
 def test_a_model_that_does_not_answer_leaves_no_run_behind() -> None:
-    with StubServer(Behaviour(script=("401",) * 40)) as server:
+    with StubServer(Behaviour(script=("401",) * 400)) as server:
         code, shown = _rex(
             "bench", *TINY, *ALONE, "--minds", "openai:fake", "--base-url", server.base_url, "--out", "r"
         )
@@ -168,3 +168,22 @@ def test_a_budget_is_not_for_a_cluster() -> None:
     code, shown = _rex("bench", *TINY, "--minds", "openai:fake", "--ray", "auto", "--budget-minutes", "1")
     assert code == 2, shown
     assert "--budget-minutes beside --ray" in shown
+
+
+def test_a_server_that_goes_away_stops_a_run_which_goes_on_when_it_is_back() -> None:
+    behaviour = Behaviour(answer=sober, script=("ok",) * 60 + ("401",) * 400)
+    with StubServer(behaviour) as server:
+        arguments = ("--minds", "openai:fake", "--base-url", server.base_url, "--out", "run", "-q", *ALONE)
+        code, shown = _rex("bench", *TINY, *arguments)
+        assert code == 4, shown
+        assert "openai:fake does not answer any more: no access" in shown
+        assert "--resume run" in shown
+        server._script.clear()  # it lets one in again
+        code, shown = _rex("bench", "--resume", "run", "-q", *ALONE)
+        assert code == 0, shown
+    with RunStore.read(Path("run")) as store:
+        rows = list(store.rows())
+        records = [store.record(row) for row in rows]
+    assert len(rows) == 3
+    calls = [call for record in records if record for step in record.steps for call in step.calls]
+    assert not any(call.fault for call in calls)

@@ -16,6 +16,10 @@ from reasoned_explorer.clock import Clock
 from reasoned_explorer.model.errors import PartError
 from reasoned_explorer.model.record import MissionEnd
 
+#: Kinds of faults that are of the way to a model and not of an answer (`openai_model`).
+_ON_THE_WAY = frozenset({"connection", "timeout", "server error", "no access", "quota", "rate limit"})
+#: After so many lost in a row, each of them tried several times, a model is gone.
+_GONE = 20
 #: What a picture may well take.
 _TOKENS_A_PICTURE = 1000
 #: The fault of a call that nobody waited for.
@@ -55,6 +59,7 @@ class Caller:
 
     Attributes:
         model: Who answers.
+        is_gone: So many calls in a row were lost that the model must be gone.
         end: How the mission must end, and why, or None: the budget is spent, or the tape is of another mission. Answers
             from then on are faults, so that whoever asks comes to an end (`end_of`).
     """
@@ -71,12 +76,14 @@ class Caller:
         budget: Budget | None = None,
     ) -> None:
         self.model = model
+        self.is_gone = False
         self.end: tuple[MissionEnd, str] | None = None
         self._clock, self._ledger = clock, ledger
         self._cache, self._budget = cache, budget
         self._player = tape if isinstance(tape, TapePlayer) else None
         self._recorder = tape if isinstance(tape, TapeRecorder) else None
         self._past = past
+        self._lost_in_a_row = 0
 
     def record_to(self, recorder: TapeRecorder) -> None:
         """Write every call to a tape from now on."""
@@ -106,9 +113,18 @@ class Caller:
             self._must_end(MissionEnd.BUDGET_SPENT, refusal)
             return self._close(asked, ChatAnswer(fault=refusal), 0.0, outcome=Outcome.DENIED)
         answer, seconds = await self._live(asked)
+        self._see_whether_it_is_gone(answer)
         if cache is not None and answer.fault is None:
             cache.put(asked.parts.digest, StoredAnswer(answer, seconds), model=self.model.name, prompt=request.prompt)
         return self._close(asked, answer, seconds)
+
+    def _see_whether_it_is_gone(self, answer: ChatAnswer) -> None:
+        """End the mission once so many calls in a row were lost on the way that nobody can be there any more."""
+        is_lost = answer.fault is not None and answer.fault.partition(":")[0] in _ON_THE_WAY
+        self._lost_in_a_row = self._lost_in_a_row + 1 if is_lost else 0
+        if self._lost_in_a_row >= _GONE:
+            self.is_gone = True
+            self._must_end(MissionEnd.FAULT, f"{self.model.name} does not answer any more: {answer.fault}")
 
     def _most_usd(self, request: ChatRequest) -> float:
         """Return what a call may well cost: three letters a token, and an answer of full length."""

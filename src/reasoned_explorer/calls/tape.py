@@ -114,14 +114,13 @@ class TapeRecorder:
         Raises:
             RecordError, RecordWriteError: As when a tape is read and when one is begun.
         """
-        past = TapePlayer(path)
+        past = TapePlayer(path, unfinished=True)
         half = past.path.with_name(f"{past.path.name}.half")
         half.unlink(missing_ok=True)
         recorder = cls(half, about=past.about)
         try:
             for call in past.calls:
-                if call.outcome is Outcome.ANSWERED:
-                    recorder.add(call)
+                recorder.add(call)
             half.replace(past.path)
         except BaseException as error:
             recorder._file.close()
@@ -179,6 +178,8 @@ class TapePlayer:
 
     Args:
         path: Of the tape.
+        unfinished: It is of a run that ended early and is to be gone on with: calls that were cancelled or denied, and
+            those at the end that were lost, are left out, since they are to be made anew.
 
     Attributes:
         path: Of the tape.
@@ -190,9 +191,13 @@ class TapePlayer:
         RecordError: If there is no tape, it is of another version, or a line other than the last is broken.
     """
 
-    def __init__(self, path: Path | str) -> None:
+    def __init__(self, path: Path | str, *, unfinished: bool = False) -> None:
         self.path = path_of(path, "tape", RecordError)
         self.calls, self.about, self.complete = _read(self.path)
+        if unfinished:
+            self.calls = [call for call in self.calls if call.outcome is Outcome.ANSWERED]
+            while self.calls and self.calls[-1].answer.fault is not None:
+                self.calls.pop()
         self._left: dict[tuple[str, tuple[int, ...], str], deque[TapedCall]] = defaultdict(deque)
         self._of_scene: dict[tuple[str, tuple[int, ...]], list[TapedCall]] = defaultdict(list)
         for call in sorted(self.calls, key=lambda call: call.asked):

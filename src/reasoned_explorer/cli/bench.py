@@ -179,7 +179,7 @@ def run_from_options(
             tidy(folder)
         else:
             complain(f"{denied}: what is finished is kept, and so are the calls of missions that were under way")
-            complain(f"go on with --resume {folder} and another budget")
+            complain(f"go on with --resume {folder}, and another budget if it was spent")
     return folder
 
 

@@ -83,7 +83,7 @@ class ModelOptions:
             cache=None if self.cache is None else AnswerCache(self.cache),
             budget=Budget(usd=self.budget_usd, minutes=self.budget_minutes) if limited else None,
             replay=None if self.replay is None else TapePlayer(self.replay),
-            past=None if self.resume is None else TapePlayer(self.resume),
+            past=None if self.resume is None else TapePlayer(self.resume, unfinished=True),
         )
 
     def tape_in(self, folder: Path, settings: MissionSettings) -> Path | None:
@@ -114,10 +114,11 @@ class ModelOptions:
         return True
 
     def say_how_to_go_on(self, desk: ModelDesk, folder: Path) -> None:
-        """Say how a mission goes on that the budget has ended; nothing where it has not."""
-        if desk.denied is not None:
+        """Say how a mission goes on that the budget or a lost model has ended; nothing for any other."""
+        if desk.broken_off is not None:
             tape = self.resume or self.record or folder / TAPE_NAME
-            complain(f"go on with it: the same command with --resume {tape}, a new --out and another budget")
+            more = "" if desk.denied is None else " and another budget"
+            complain(f"go on with it: the same command with --resume {tape}, a new --out{more}")
 
     @contextmanager
     def taping(self, desk: ModelDesk, mission: Mission, folder: Path) -> Iterator[None]:

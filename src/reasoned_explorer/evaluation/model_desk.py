@@ -260,6 +260,12 @@ class ModelDesk:
         """Why a call might not begin: the budget is spent; None while it is not."""
         return None if self._budget is None else self._budget.denied
 
+    @property
+    def broken_off(self) -> str | None:
+        """Why the last mission could not go on: the budget is spent, or a model is gone; None where it could."""
+        gone = (caller.end[1] for caller in self._callers if caller.is_gone and caller.end is not None)
+        return self.denied or next(gone, None)
+
     def check_taped(self, mission: Mapping[str, Any]) -> None:
         """Check that a mission is the one that is on the tape which is replayed or gone on with.
 
@@ -312,7 +318,7 @@ def _abilities_of(about: Mapping[str, Any]) -> Abilities:
 def _past_of(tape: Path, mission: Mapping[str, Any]) -> TapePlayer | None:
     """Return the tape of an earlier part of a mission, or None where there is none of it."""
     try:
-        past = TapePlayer(tape) if is_there(tape) else None
+        past = TapePlayer(tape, unfinished=True) if is_there(tape) else None
     except RecordError:
         return None
     return past if past is not None and past.about.get("mission") == mission else None

@@ -124,7 +124,7 @@ def run_task(plan: BenchPlan, task: Task, access: ModelAccess = PLAIN_ACCESS) ->
         row = failed_row(plan, task, str(error))
     else:
         # A call may have been denied and the mission have ended otherwise: without the budget it would be another.
-        if (denied := desk.denied) is not None and models_of(settings):
+        if (denied := desk.broken_off) is not None and models_of(settings):
             return Done(task, None, None, time.perf_counter() - started_s, failed=False, usd=0.0, denied=denied)
         row = _row_of(plan, task, item, result)
         if plan.keep_traces:
