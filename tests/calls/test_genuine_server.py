@@ -157,7 +157,7 @@ def test_what_it_can_do_is_told_as_it_is(server: TransformersServe) -> None:
         "structured output    no: plain text is read",
         "log-probabilities    no",
         "pictures             no",
-        "14 calls",
+        "15 calls",
     ):
         assert words in result.output
 

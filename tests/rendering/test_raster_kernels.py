@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reasoned_explorer.rendering.raster_kernels import fill_triangle
-from reasoned_explorer.rendering.renderer import _new_canvas
+from reasoned_explorer.rendering.room import new_canvas
 
 SIDE = 24
 #: On sample centres, between them and anywhere: ties are what goes wrong.
@@ -18,7 +18,7 @@ def covered(points: np.ndarray, depth: np.ndarray, triangle: tuple[int, int, int
     found = np.zeros((SIDE, SIDE), bool)
     corners = np.column_stack([points * depth[:, None], depth, points])
     for a, b, c in (triangle, triangle[::-1]):
-        canvas = _new_canvas(SIDE, SIDE)
+        canvas = new_canvas(SIDE, SIDE)
         canvas.nearness[:] = 0.0
         canvas.owners[:] = -1
         fill_triangle(corners, a, b, c, 5, 0, canvas.nearness, canvas.owners, canvas.triangles)
@@ -59,7 +59,7 @@ def test_a_floor_that_passes_below_the_eye_is_whole(x, height) -> None:
     hits = np.zeros((SIDE, SIDE), int)
     for triangle in ((0, 1, 2), (0, 2, 3)):
         for a, b, c in (triangle, triangle[::-1]):
-            canvas = _new_canvas(SIDE, SIDE)
+            canvas = new_canvas(SIDE, SIDE)
             canvas.nearness[:] = 0.0
             canvas.owners[:] = -1
             fill_triangle(corners, a, b, c, 5, 0, canvas.nearness, canvas.owners, canvas.triangles)
