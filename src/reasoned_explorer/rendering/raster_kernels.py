@@ -258,6 +258,9 @@ def fill_triangle(
 ) -> None:
     """Keep a triangle wherever it is nearest and faces the eye.
 
+    Triangles that share an edge cover every sample along it exactly once. Around a corner that hits the middle of a
+    sample to the last digit, rounding decides: the sample may be left out, or covered twice.
+
     Args:
         corners: As in `Scratch`.
         a: Its first corner; counter-clockwise seen from outside.
