@@ -70,6 +70,15 @@ class Abilities:
         return "json_schema" if self.json_schema else "json_object" if self.json_object else "none"
 
 
+def abilities_from_json(said: Mapping[str, Any]) -> Abilities:
+    """Return the abilities that `dataclasses.asdict` and JSON made a mapping of.
+
+    Raises:
+        TypeError: If they are none.
+    """
+    return Abilities(**{**said, "faults": tuple(said.get("faults", ()))})
+
+
 class _Probe:
     """Asks one after the other and keeps what it took."""
 

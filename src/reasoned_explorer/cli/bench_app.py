@@ -140,7 +140,7 @@ def bench(
     """Run planners over the missions of a split, and print one table.
 
     Exit code 0: all missions ran. 2: bad input. 3: a part failed in a mission, or the disk is full. 4: the budget is
-    spent. 130: stopped with Ctrl-C. What is finished is kept: go on with --resume.
+    spent, or a model is gone. 130: stopped with Ctrl-C. What is finished is kept: go on with --resume.
     """
     from reasoned_explorer.cli.bench import BenchOptions, run_bench_from_options
     from reasoned_explorer.cli.models import ModelOptions

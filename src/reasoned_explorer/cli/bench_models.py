@@ -3,21 +3,17 @@
 import time
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from reasoned_explorer.calls.abilities import abilities_from_json
 from reasoned_explorer.calls.budget import Budget
 from reasoned_explorer.calls.prices import read_prices
 from reasoned_explorer.cli.models import ModelOptions
 from reasoned_explorer.evaluation.bench.plan import BenchPlan
 from reasoned_explorer.evaluation.bench.store import RunStore
-from reasoned_explorer.evaluation.model_access import (
-    PLAIN_ACCESS,
-    ModelAccess,
-    abilities_as_json,
-    abilities_from_json,
-)
+from reasoned_explorer.evaluation.model_access import PLAIN_ACCESS, ModelAccess
 from reasoned_explorer.evaluation.model_desk import KnownModel, ModelDesk
 from reasoned_explorer.model import RecordError
 from reasoned_explorer.model.disk import disk_error
@@ -58,7 +54,9 @@ class ReadyModels:
         if not self.known:
             return PLAIN_ACCESS
         abilities = {each.model.name: each.abilities for each in self.known}
-        store.keep_models({"base_url": self.base_url, "abilities": abilities_as_json(abilities)})
+        store.keep_models(
+            {"base_url": self.base_url, "abilities": {name: asdict(able) for name, able in abilities.items()}}
+        )
         spent, tapes = store.folder / SPENT_NAME, store.folder / UNDER_WAY_NAME
         try:
             spent.unlink(missing_ok=True)  # a budget is a sitting's
@@ -103,7 +101,7 @@ def models_ready(options: ModelOptions, plan: BenchPlan, kept: Mapping[str, Any]
         key_variable=options.key_variable,
         prices=None if options.prices is None else read_prices(options.prices),
         budget=budget,
-        abilities=abilities_from_json(kept.get("abilities", {})),
+        abilities={name: abilities_from_json(said) for name, said in kept.get("abilities", {}).items()},
     )
     known = desk.prepare(plan.models)
     real = [place.name for place in plan.split.places if place.city != GENERATED]

@@ -1,17 +1,15 @@
 """How the models of many missions are reached, and what they may cost: plain data that every worker is given."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from hashlib import blake2b
 from pathlib import Path
-from typing import Any
 
 from reasoned_explorer.calls.abilities import Abilities
 from reasoned_explorer.calls.budget import Budget
 from reasoned_explorer.calls.cache import AnswerCache
 from reasoned_explorer.calls.prices import read_prices
 from reasoned_explorer.evaluation.model_desk import ModelDesk
-from reasoned_explorer.model import Fault, RecordError
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,20 +95,3 @@ class ModelAccess:
 
 #: OpenAI's own, or what ``OPENAI_BASE_URL`` says; no cache, no budget, no tapes.
 PLAIN_ACCESS = ModelAccess()
-
-
-def abilities_as_json(abilities: Mapping[str, Abilities]) -> dict[str, Any]:
-    """Return abilities as JSON values."""
-    return {name: asdict(able) for name, able in abilities.items()}
-
-
-def abilities_from_json(data: Mapping[str, Any]) -> dict[str, Abilities]:
-    """Return what `abilities_as_json` made values of.
-
-    Raises:
-        RecordError: If they are none.
-    """
-    try:
-        return {name: Abilities(**{**able, "faults": tuple(able.get("faults", ()))}) for name, able in data.items()}
-    except (TypeError, AttributeError) as error:
-        raise RecordError("abilities", [Fault(f"{error}", "abilities as a run keeps them")]) from error

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 from weakref import WeakSet
 
-from reasoned_explorer.calls.abilities import Abilities, probe
+from reasoned_explorer.calls.abilities import Abilities, abilities_from_json, probe
 from reasoned_explorer.calls.budget import Budget, faults_of_budget
 from reasoned_explorer.calls.cache import AnswerCache
 from reasoned_explorer.calls.caller import Caller
@@ -307,12 +307,8 @@ def _taped_abilities(tape: TapePlayer | None) -> dict[str, Abilities]:
     """Return what the models on a tape were able to, as far as it says: a mission goes on asking as it began."""
     models = {} if tape is None else tape.about.get("models", {})
     with suppress(TypeError, KeyError, AttributeError):
-        return {name: _abilities_of(about) for name, about in models.items()}
+        return {name: abilities_from_json(about["abilities"]) for name, about in models.items()}
     return {}
-
-
-def _abilities_of(about: Mapping[str, Any]) -> Abilities:
-    return Abilities(**{**about["abilities"], "faults": tuple(about["abilities"].get("faults", ()))})
 
 
 def _past_of(tape: Path, mission: Mapping[str, Any]) -> TapePlayer | None:
@@ -339,7 +335,9 @@ def _taped(name: str, player: TapePlayer) -> KnownModel:
     about = player.about.get("models", {}).get(name)
     try:
         return KnownModel(
-            _Taped(name, about["fingerprint"], about.get("family", "")), _abilities_of(about), priced=True
+            _Taped(name, about["fingerprint"], about.get("family", "")),
+            abilities_from_json(about["abilities"]),
+            priced=True,
         )
     except (TypeError, KeyError) as error:
         held = ", ".join(player.about.get("models", {})) or "none"

@@ -49,7 +49,7 @@ def run_in_processes(
     """Run missions in several processes; they come in the order in which they end.
 
     A process that dies takes nothing with it but the missions that it was in: these are tried again. Processes whose
-    parent is gone end by themselves. Once a mission was broken off because the budget is spent, no other is begun.
+    parent is gone end by themselves. Once a mission was broken off, its budget spent or its model gone, no other is begun.
     """
     with _one_thread_each():
         while suspects := (yield from _run_pool(plan, tasks, access, workers)):
@@ -82,7 +82,7 @@ class _Broken:
 def _run_pool(
     plan: BenchPlan, tasks: Sequence[Task], access: ModelAccess, workers: int
 ) -> Generator[Done, None, _Broken | None]:
-    """Run missions until they are done, or the budget is spent (returns None), or a process dies."""
+    """Run missions until they are done or one is broken off (returns None), or a process dies."""
     queues = Queues(plan, tasks, workers)
     under_way: dict[Future[Done], tuple[int, Task]] = {}
     with ExitStack() as stack:
@@ -160,7 +160,7 @@ class Queues:
         self._own[worker].appendleft(task)
 
     def heed(self, done: Done) -> None:
-        """Hand out nothing more once a mission was broken off because the budget is spent."""
+        """Hand out nothing more once a mission was broken off: the budget is spent, or a model is gone."""
         if done.denied is not None:
             self._places.clear()
             for queue in self._own:

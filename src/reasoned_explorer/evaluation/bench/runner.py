@@ -24,7 +24,7 @@ class BenchProgress:
         here: Finished in this sitting.
         failed: Of these, so many with a part that failed.
         usd: Spent in this sitting, US dollars.
-        denied: Why it ends early, or None: the budget is spent.
+        denied: Why it ends early, or None: the budget is spent, or a model is gone.
         started_s: When this sitting began, seconds of a monotonic clock.
     """
 
@@ -99,7 +99,8 @@ def run_bench(
         access: How models are reached and what they may cost.
 
     Returns:
-        Why not all missions were run, or None where they were: the budget is spent, and the run can be gone on with.
+        Why not all missions were run, or None where they were: the budget is spent, or a model is gone; the run can be
+        gone on with.
 
     Raises:
         WorldError: If the world of a mission is gone or is another one now; what is finished stays.

@@ -39,12 +39,12 @@ class Done:
 
     Attributes:
         task: Which.
-        row: Its row, as `MissionRow.as_json` gives it; None for a mission that the run's budget broke off.
+        row: Its row, as `MissionRow.as_json` gives it; None for a mission that was broken off and is to be gone on with.
         trace: Its record, compressed, or None.
         wall_s: Seconds that it took on the machine that ran it.
         failed: A part failed.
         usd: What it cost, US dollars, as far as that is known.
-        denied: Why no more calls may begin, or None: the run's budget is spent.
+        denied: Why no more missions are to begin, or None: the run's budget is spent, or a model is gone.
     """
 
     task: Task
