@@ -49,7 +49,8 @@ def run_in_processes(
     """Run missions in several processes; they come in the order in which they end.
 
     A process that dies takes nothing with it but the missions that it was in: these are tried again. Processes whose
-    parent is gone end by themselves. Once a mission was broken off, its budget spent or its model gone, no other is begun.
+    parent is gone end by themselves. Once a mission was broken off, its budget spent or its model gone, no other is
+    begun.
     """
     with _one_thread_each():
         while suspects := (yield from _run_pool(plan, tasks, access, workers)):

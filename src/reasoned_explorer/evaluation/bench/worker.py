@@ -39,7 +39,7 @@ class Done:
 
     Attributes:
         task: Which.
-        row: Its row, as `MissionRow.as_json` gives it; None for a mission that was broken off and is to be gone on with.
+        row: Its row, as `MissionRow.as_json` gives it; None for one that was broken off and is to go on.
         trace: Its record, compressed, or None.
         wall_s: Seconds that it took on the machine that ran it.
         failed: A part failed.
