@@ -64,7 +64,7 @@ def _pictures(server: StubServer) -> list[Image.Image]:
     """Return the pictures that were sent, without those of the check of what the model can do."""
     found = []
     for each in server.received:
-        for message in each.body["messages"]:
+        for message in each.body.get("messages", ()):
             parts = message["content"] if isinstance(message["content"], list) else []
             for part in parts:
                 if part["type"] == "image_url":
