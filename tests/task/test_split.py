@@ -3,7 +3,7 @@ from dataclasses import replace
 import pytest
 
 from reasoned_explorer.model import InputError
-from reasoned_explorer.task.split import BANDS_M, Split
+from reasoned_explorer.task.split import BANDS_M, SPLIT_VERSION, Split
 from reasoned_explorer.task.splitting import Dealing, Share, built_in_split, ceiling_casr, make_split, places_of_worlds
 
 
@@ -47,7 +47,7 @@ def test_a_split_can_be_cut_down_to_levels(split: Split) -> None:
 
 def test_what_is_said_of_a_split(split: Split) -> None:
     text = "\n".join(split.lines())
-    assert f"here v1 [{split.digest[:12]}]" in text
+    assert f"here v{SPLIT_VERSION} [{split.digest[:12]}]" in text
     assert "success of a blind declaration" in text
 
 
@@ -75,6 +75,6 @@ def test_the_built_in_split_is_the_same_on_every_machine() -> None:
     how = built_in_split("mini")
     mini = make_split("mini", how.places, share=how.share, dealing=Dealing(how.seed))
     # Whoever changes the generator, the goals or how starts are drawn makes another split: a new SPLIT_VERSION.
-    # The same code has dealt two splits in two environments (docs/log.md): it is not known yet what decides.
-    assert mini.label in {"mini v1 [4b3560afafe0]", "mini v1 [44f7e6928c54]"}
+    # Seen with GEOS 3.13.1 and 3.14.1; where another label comes out, docs/log.md, "Splits", tells what to look at.
+    assert mini.label == "mini v2 [0c5b418d02a0]"
     assert len(mini.episodes) == 56

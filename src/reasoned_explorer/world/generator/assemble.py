@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from shapely import Polygon
 
+from reasoned_explorer.world.generator import planar
 from reasoned_explorer.world.generator.sketch import Footprint, Patch, Sketch
 from reasoned_explorer.world.taxonomy import Ground
 from reasoned_explorer.world.world import Building, Region, Ring, Way
@@ -36,7 +37,7 @@ def ground_of(sketch: Sketch) -> list[Patch]:
         areas = np.array([patch.area for patch in sketch.patches])
         inside = shapely.contains_properly(sketch.box, areas)
         cut = areas.copy()
-        cut[~inside] = shapely.intersection(areas[~inside], sketch.box)
+        cut[~inside] = planar.intersection(areas[~inside], sketch.box)
         for patch, area, whole in zip(sketch.patches, cut, inside.tolist(), strict=True):
             parts = (area,) if whole else shapely.get_parts(area)
             made.extend(

@@ -11,6 +11,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 from shapely import LineString, Polygon
 
+from reasoned_explorer.world.generator import planar
 from reasoned_explorer.world.generator.shapes import Points, blob, footprint, inner_circle, left_of, placed, polygons_of
 from reasoned_explorer.world.generator.sketch import Footprint, Sketch, Zone
 from reasoned_explorer.world.taxonomy import Ground
@@ -55,8 +56,8 @@ def height_of(rng: Generator, levels: tuple[int, int]) -> float:
 
 def blocks_between(area: Polygon, beds: shapely.Geometry) -> list[Polygon]:
     """Return the blocks that streets leave of an area, from the south-west on; slivers are left out."""
-    left = shapely.difference(area, beds)
-    found = [polygon for polygon in polygons_of(shapely.simplify(left, 0.25)) if polygon.area > 60.0]
+    left = planar.difference(area, beds)
+    found = [polygon for polygon in polygons_of(planar.simplify(left, 0.25)) if polygon.area > 60.0]
     found.sort(key=lambda polygon: (round(polygon.centroid.y, 3), round(polygon.centroid.x, 3)))
     return found
 
@@ -95,16 +96,16 @@ def _corner_free(ring: Points, clear_m: float, rng: Generator, frontage_m: tuple
 def perimeter_block(sketch: Sketch, rng: Generator, block: Polygon, fabric: Fabric) -> None:
     """Build a block up around its rim, with a courtyard that a passage leads into."""
     depth = float(rng.uniform(*fabric.depth_m))
-    block = shapely.orient_polygons(shapely.simplify(block, 0.3))
-    court = shapely.buffer(block, -depth, join_style="mitre")
+    block = shapely.orient_polygons(planar.simplify(block, 0.3))
+    court = planar.buffer(block, -depth, join_style="mitre")
     base = height_of(rng, fabric.levels)
     if court.is_empty or court.area < 150.0:
         _solid_block(sketch, rng, block, fabric)
         return
-    rim = shapely.difference(block, court)
+    rim = planar.difference(block, court)
     ring = np.asarray(block.exterior.coords)
     cuts = _corner_free(ring, depth, rng, fabric.frontage_m)
-    pieces = polygons_of(shapely.polygonize([shapely.union_all([rim.boundary, *cuts])]))
+    pieces = polygons_of(planar.polygonize([planar.union_all([rim.boundary, *cuts])]))
     pieces = [piece for piece in pieces if piece.area > 20.0]
     shapely.prepare(rim)
     own = shapely.contains(rim, shapely.point_on_surface(np.array(pieces, dtype=object)))
@@ -114,14 +115,14 @@ def perimeter_block(sketch: Sketch, rng: Generator, block: Polygon, fabric: Fabr
     sketch.lay(Ground.YARD, court, "courtyard")
     sketch.lay(Ground.PAVEMENT, rim)
     choice = rng.random()
-    inner = polygons_of(shapely.buffer(court, -4.0)) if choice < 0.75 else []
+    inner = polygons_of(planar.buffer(court, -4.0)) if choice < 0.75 else []
     for part in inner:
         if choice < 0.45 and part.area > 120.0:
-            sketch.lay(Ground.GARDEN, shapely.buffer(shapely.buffer(part, -3.0), 3.0), "garden")
+            sketch.lay(Ground.GARDEN, planar.buffer(planar.buffer(part, -3.0), 3.0), "garden")
         elif choice < 0.65 and part.area > 500.0:
             sketch.lay(Ground.PARKING, part, "carpark")
         elif choice < 0.75 and part.area > 300.0:
-            sketch.lay(Ground.GRASS, shapely.buffer(shapely.buffer(part, -3.0), 3.0), "garden")
+            sketch.lay(Ground.GRASS, planar.buffer(planar.buffer(part, -3.0), 3.0), "garden")
     shapely.prepare(passage)
     cut = shapely.intersects(passage, np.array(lots, dtype=object)).tolist()
     for lot, is_cut in zip(lots, cut, strict=True):
@@ -129,7 +130,7 @@ def perimeter_block(sketch: Sketch, rng: Generator, block: Polygon, fabric: Fabr
             sketch.lay(Ground.GARDEN if rng.random() < 0.4 else Ground.YARD, lot, "gap")
             continue
         height = base + _STOREY_M * float(rng.integers(-1, 2)) + float(rng.uniform(-0.6, 0.6))
-        for part in polygons_of(shapely.difference(lot, passage)) if is_cut else (lot,):
+        for part in polygons_of(planar.difference(lot, passage)) if is_cut else (lot,):
             if part.area > 25.0:
                 sketch.build(Footprint(part, round(max(height, 4.0), 1), fabric.zone, _use(rng, fabric)))
 
@@ -152,8 +153,8 @@ def _passage(rng: Generator, court: shapely.Geometry, ring: Points, box: Polygon
         way = feet[side] - middles[side]
         step = way / max(float(np.hypot(*way)), 1e-6) * 2.0
         line = LineString([middles[side] - step, feet[side] + step])
-        strips.append(shapely.buffer(line, 2.6, cap_style="flat"))
-    return shapely.union_all(strips)
+        strips.append(planar.buffer(line, 2.6, cap_style="flat"))
+    return planar.union_all(strips)
 
 
 def _use(rng: Generator, fabric: Fabric) -> str:
@@ -185,7 +186,7 @@ def _solid_block(sketch: Sketch, rng: Generator, block: Polygon, fabric: Fabric)
             continue
         corners = [a + (b - a) * start, a + (b - a) * end, a + (b - a) * end + across, a + (b - a) * start + across]
         height = base + _STOREY_M * float(rng.integers(-1, 2))
-        for part in polygons_of(shapely.intersection(Polygon(corners), block)):
+        for part in polygons_of(planar.intersection(Polygon(corners), block)):
             if part.area > 25.0:
                 sketch.build(Footprint(part, round(max(height, 4.0), 1), fabric.zone, _use(rng, fabric)))
 
@@ -201,13 +202,13 @@ def _tower_block(sketch: Sketch, rng: Generator, block: Polygon, fabric: Fabric)
     size = radius * float(rng.uniform(0.95, 1.15))
     kind = str(rng.choice(["rect", "rect", "l", "u", "h"]))
     ring = footprint(kind, size * 1.25, size, size * 0.42)
-    tower = shapely.intersection(placed(ring, x, y, angle), shapely.buffer(block, -3.0))
+    tower = planar.intersection(placed(ring, x, y, angle), planar.buffer(block, -3.0))
     for part in polygons_of(tower)[:1]:
         sketch.build(Footprint(part, round(float(rng.uniform(12, 28)) * _STOREY_M, 1), fabric.zone, "office"))
-    rest = shapely.difference(shapely.buffer(block, -3.0), placed(ring, x, y, angle).buffer(9.0))
+    rest = planar.difference(planar.buffer(block, -3.0), planar.buffer(placed(ring, x, y, angle), 9.0))
     for part in polygons_of(rest):
         if part.area > 260.0 and rng.random() < 0.6:
-            sketch.lay(Ground.GRASS, shapely.buffer(shapely.buffer(part, -4.0), 2.5), "lawn")
+            sketch.lay(Ground.GRASS, planar.buffer(planar.buffer(part, -4.0), 2.5), "lawn")
 
 
 def _long_heading(block: Polygon) -> float:
@@ -223,9 +224,9 @@ def square_block(sketch: Sketch, rng: Generator, block: Polygon, zone: Zone) -> 
     sketch.lay(Ground.PLAZA, block, "plaza")
     x, y, radius = inner_circle(block)
     if radius > 12.0:
-        ring = shapely.difference(shapely.buffer(block, -5.0), shapely.points(x, y).buffer(9.0))
-        bed = shapely.difference(ring, shapely.buffer(LineString([(x - 200, y), (x + 200, y)]), 3.0))
-        bed = shapely.difference(bed, shapely.buffer(LineString([(x, y - 200), (x, y + 200)]), 3.0))
+        ring = planar.difference(planar.buffer(block, -5.0), planar.buffer(shapely.points(x, y), 9.0))
+        bed = planar.difference(ring, planar.buffer(LineString([(x - 200, y), (x + 200, y)]), 3.0))
+        bed = planar.difference(bed, planar.buffer(LineString([(x, y - 200), (x, y + 200)]), 3.0))
         if rng.random() < 0.6:
             sketch.lay(Ground.GRASS, bed, "lawn")
         sketch.put(str(rng.choice(["fountain", "monument", "artwork"])), x, y, rng.uniform(0, 6.28))
@@ -241,22 +242,22 @@ def garden_block(sketch: Sketch, rng: Generator, block: Polygon) -> None:
         play = blob(rng, x, y, min(9.0, radius * 0.5), roughness=0.12)
         sketch.lay(Ground.PLAYGROUND, play, "playground")
     elif radius > 14.0:
-        sketch.lay(Ground.PLAZA, shapely.points(x, y).buffer(min(7.0, radius * 0.35)), "rondel")
+        sketch.lay(Ground.PLAZA, planar.buffer(shapely.points(x, y), min(7.0, radius * 0.35)), "rondel")
         sketch.put(str(rng.choice(["fountain", "artwork", "planter", "monument"])), x, y)
     box = np.asarray(shapely.minimum_rotated_rectangle(block).exterior.coords)[:4]
     middle = np.array([x, y])
     for corner in box:
         end = middle + (corner - middle) * 1.05
         bend = middle + (corner - middle) * 0.5 + rng.uniform(-4, 4, 2)
-        path = shapely.intersection(LineString([middle, bend, end]), shapely.buffer(block, 0.5))
-        if not path.is_empty and isinstance(path, LineString):
-            sketch.pave(np.asarray(path.coords), 2.6, Ground.PATH, "footway")
+        paths = planar.lines_within(np.array([middle, bend, end]), planar.buffer(block, 0.5))
+        if len(paths) == 1:
+            sketch.pave(paths[0], 2.6, Ground.PATH, "footway")
 
 
 def carpark_block(sketch: Sketch, block: Polygon) -> None:
     """Lay a block out as a car park behind a green edge."""
     sketch.lay(Ground.GRASS, block, "verge")
-    inner = shapely.buffer(block, -2.0, join_style="mitre")
+    inner = planar.buffer(block, -2.0, join_style="mitre")
     sketch.lay(Ground.PARKING, inner, "carpark")
     for part in polygons_of(inner):
         x, y, _ = inner_circle(part)
@@ -279,7 +280,7 @@ def landmark_block(sketch: Sketch, rng: Generator, block: Polygon, fabric: Fabri
     if church:
         nave = placed(footprint("rect", size * 0.8, size * 2.0, 5.0), x, y, heading)
         cross = placed(footprint("rect", size * 1.5, size * 0.6, 5.0), x, y, heading)
-        outline, host, height, kind = shapely.union(nave, cross), "church", float(rng.uniform(16, 30)), "church"
+        outline, host, height, kind = planar.union(nave, cross), "church", float(rng.uniform(16, 30)), "church"
     else:
         outline = placed(footprint("u", size * 1.9, size * 1.3, size * 0.45), x, y, heading)
         host, height, kind = str(rng.choice(["museum", "library"])), float(rng.uniform(12, 20)), "public"

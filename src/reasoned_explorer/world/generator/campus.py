@@ -7,6 +7,7 @@ import shapely
 from numpy.random import Generator
 from shapely import Polygon
 
+from reasoned_explorer.world.generator import planar
 from reasoned_explorer.world.generator.blocks import carpark_block, height_of
 from reasoned_explorer.world.generator.park import lay_mesh, neighbours
 from reasoned_explorer.world.generator.shapes import (
@@ -51,7 +52,7 @@ def fill_campus(sketch: Sketch, rng: Generator, cell: Polygon, area: Polygon, *,
             away = start - np.array(cell.centroid.coords[0])
             line = np.array([start, start + away / np.hypot(*away) * size])
             add_street(sketch, rng, line, "residential", within=cell, trees=0.0)
-    ground = shapely.difference(area, sketch.beds(sketch.streets[before:])) if not framed else area
+    ground = planar.difference(area, sketch.beds(sketch.streets[before:])) if not framed else area
     parts = polygons_of(ground)
     inner = max(parts, key=lambda part: (part.contains(cell.centroid), part.area))
     sketch.lay(Ground.GRASS, ground, "campus")
@@ -60,7 +61,7 @@ def fill_campus(sketch: Sketch, rng: Generator, cell: Polygon, area: Polygon, *,
     quads = _quads(sketch, rng, inner)
     features = _features(sketch, rng, inner, quads, first)
     _free_buildings(sketch, rng, ground, [*quads, *features], first)
-    taken = shapely.union_all([item.area for item in sketch.footprints[first:]]).buffer(10.0, quad_segs=2)
+    taken = planar.buffer(planar.union_all([item.area for item in sketch.footprints[first:]]), 10.0, quad_segs=2)
     _outside(sketch, rng, [part for part in parts if part is not inner], taken)
     _paths(sketch, rng, inner, (quads, features), (first, bottom))
 
@@ -81,7 +82,7 @@ def _ring_road(rng: Generator, cell: Polygon) -> Points:
 def _quads(sketch: Sketch, rng: Generator, inner: Polygon) -> list[Polygon]:
     """Lay out quads, each with academic buildings around three or four of its sides."""
     count = max(1, round(inner.area / 24_000.0))
-    spots = spread(rng, shapely.buffer(inner, -52.0), 22.0, jitter=0.5)
+    spots = spread(rng, planar.buffer(inner, -52.0), 22.0, jitter=0.5)
     if not len(spots):
         spots = np.array([inner_circle(inner)[:2]])
     order = rng.permutation(len(spots))
@@ -91,7 +92,7 @@ def _quads(sketch: Sketch, rng: Generator, inner: Polygon) -> list[Polygon]:
     quads: list[Polygon] = []
     taken: list[Polygon] = []
     middles: list[tuple[float, float]] = []
-    wide = shapely.buffer(inner, 3.0)
+    wide = planar.buffer(inner, 3.0)
     shapely.prepare(wide)
     for index in order.tolist():
         if len(quads) >= count:
@@ -107,7 +108,7 @@ def _quads(sketch: Sketch, rng: Generator, inner: Polygon) -> list[Polygon]:
             continue
         middles.append((x, y))
         quad = placed(footprint("rect", width, depth, 1.0), x, y, heading)
-        taken.append(room.buffer(6.0))
+        taken.append(planar.buffer(room, 6.0))
         quads.append(quad)
         sketch.lay(Ground.GRASS, quad, "lawn", name="Quad")
         _around(sketch, rng, (x, y, heading), (width, depth), first=len(quads) == 1)
@@ -142,12 +143,12 @@ def _around(
 
 def _features(sketch: Sketch, rng: Generator, inner: Polygon, quads: list[Polygon], first: int) -> list[Polygon]:
     """Lay out a pitch, a pond, a grove, a plaza and car parks where quads leave room."""
-    built = [item.area.buffer(9.0, quad_segs=2) for item in sketch.footprints[first:]]
-    taken: list[Polygon] = [quad.buffer(10.0, quad_segs=2) for quad in quads] + built
+    built = [planar.buffer(item.area, 9.0, quad_segs=2) for item in sketch.footprints[first:]]
+    taken: list[Polygon] = [planar.buffer(quad, 10.0, quad_segs=2) for quad in quads] + built
     features: list[Polygon] = []
     rooms = (("plaza", 15.0), ("carpark", 21.0), ("pitch", 24.0), ("pond", 19.0), ("carpark", 18.0), ("wood", 17.0))
     scale = max(1, round(inner.area / 110_000.0))
-    insides = {radius: shapely.buffer(inner, -radius - 2.0) for _, radius in rooms}
+    insides = {radius: planar.buffer(inner, -radius - 2.0) for _, radius in rooms}
     for use, radius in rooms * scale:
         spots = spread(rng, insides[radius], 17.0, jitter=0.5)
         if not len(spots):
@@ -164,7 +165,7 @@ def _features(sketch: Sketch, rng: Generator, inner: Polygon, quads: list[Polygo
             order = np.argsort(towards_edge * shapely.distance(shapely.points(spots), inner.exterior))
         index = next(index for index in order.tolist() if free[index])
         x, y = (float(value) for value in spots[index])
-        mesh = shapely.points(x, y).buffer(radius, quad_segs=6)
+        mesh = planar.buffer(shapely.points(x, y), radius, quad_segs=6)
         taken.append(mesh)
         if use == "carpark":
             lot = placed(footprint("rect", radius * 1.55, radius * 1.1, 1.0), x, y, rng.uniform(0, math.pi))
@@ -179,7 +180,7 @@ def _features(sketch: Sketch, rng: Generator, inner: Polygon, quads: list[Polygo
             features.append(spot)
         else:
             lay_mesh(sketch, rng, mesh, use)
-            features.append(mesh.buffer(-4.0))
+            features.append(planar.buffer(mesh, -4.0))
     return features
 
 
@@ -187,11 +188,11 @@ def _free_buildings(
     sketch: Sketch, rng: Generator, ground: shapely.Geometry, taken_areas: list[Polygon], first: int
 ) -> None:
     """Build halls and institutes wherever there is room, fronts to the middle of the campus or the road."""
-    solid = [shapely.buffer(area, 8.0, quad_segs=2) for area in taken_areas]
-    solid += [shapely.buffer(item.area, 13.0, quad_segs=2) for item in sketch.footprints[first:]]
-    room = shapely.difference(shapely.buffer(ground, -6.0), shapely.union_all(solid))
+    solid = [planar.buffer(area, 8.0, quad_segs=2) for area in taken_areas]
+    solid += [planar.buffer(item.area, 13.0, quad_segs=2) for item in sketch.footprints[first:]]
+    room = planar.difference(planar.buffer(ground, -6.0), planar.union_all(solid))
     shapely.prepare(room)
-    spots = spread(rng, shapely.buffer(ground, -15.0), 22.0, jitter=0.5)
+    spots = spread(rng, planar.buffer(ground, -15.0), 22.0, jitter=0.5)
     number = len(spots)
     grain = rng.uniform(0, math.pi)
     kinds = np.array(["rect", "rect", "l", "u", "t"])[rng.integers(5, size=number)].tolist()
@@ -215,7 +216,7 @@ def _free_buildings(
         if not shapely.contains(room, area) or any(area.intersects(other) for other in near):
             continue
         middles[len(built)] = x, y
-        built.append(area.buffer(13.0, quad_segs=2))
+        built.append(planar.buffer(area, 13.0, quad_segs=2))
         door = (x + math.sin(heading) * depth / 2, y + math.cos(heading) * depth / 2)
         kind_name, name = ("dormitory", "") if rng.random() < 0.3 else ("university", _NAMES[int(rng.integers(12))])
         sketch.build(Footprint(area, height_of(rng, (2, 6)), "campus", kind_name, door, name=name))
@@ -224,8 +225,8 @@ def _free_buildings(
 def _outside(sketch: Sketch, rng: Generator, parts: list[Polygon], taken: shapely.Geometry) -> None:
     """Plant woods and lay car parks beyond the ring road."""
     for part in parts:
-        for rest in polygons_of(shapely.difference(shapely.buffer(part, -3.0), taken)):
-            smoothed = shapely.buffer(shapely.buffer(rest, -5.0), 5.0)
+        for rest in polygons_of(planar.difference(planar.buffer(part, -3.0), taken)):
+            smoothed = planar.buffer(planar.buffer(rest, -5.0), 5.0)
             if rest.area > 500.0 and rng.random() < 0.65:
                 sketch.lay(Ground.WOOD, smoothed, "wood")
 
@@ -241,13 +242,13 @@ def _paths(
     (quads, features), (first, bottom) = areas, start
     nodes: list[Points] = []
     for quad in quads:
-        ring = np.asarray(shapely.buffer(quad, 2.0, join_style="mitre").exterior.coords)
+        ring = np.asarray(planar.buffer(quad, 2.0, join_style="mitre").exterior.coords)
         sketch.pave(ring, 3.0, Ground.PATH)
         corners = np.asarray(quad.exterior.coords)[:4]
         middle = corners.mean(axis=0)
         for corner in corners:
             sketch.pave(np.vstack([middle, corner]), 2.4, Ground.PATH)
-        sketch.lay(Ground.PLAZA, shapely.points(middle).buffer(5.0), "rondel")
+        sketch.lay(Ground.PLAZA, planar.buffer(shapely.points(middle), 5.0), "rondel")
         sketch.put(str(rng.choice(["artwork", "flagpole", "fountain", "artwork"])), *middle.tolist())
         nodes.extend(ring[:4])
     for item in sketch.footprints[first:]:
@@ -264,13 +265,14 @@ def _paths(
     nodes.extend(np.array(outline.interpolate(float(share) % 1.0, normalized=True).coords[0]) for share in shares)
     points = np.array(nodes)
     points = points[thin(points, 7.0)]
-    walls = [item.area.buffer(2.2, quad_segs=1) for item in sketch.footprints[first:]]
-    wet = [item.area.buffer(2.5, quad_segs=2) for item in sketch.patches[bottom:] if item.role in ("pond", "pitch")]
-    blocked = shapely.union_all([*walls, *wet, *(quad.buffer(-1.0) for quad in quads)])
+    walls = [planar.buffer(item.area, 2.2, quad_segs=1) for item in sketch.footprints[first:]]
+    spared = [item.area for item in sketch.patches[bottom:] if item.role in ("pond", "pitch")]
+    wet = planar.buffer(np.array(spared, dtype=object), 2.5, quad_segs=2)
+    blocked = planar.union_all([*walls, *wet, *(planar.buffer(quad, -1.0) for quad in quads)])
     shapely.prepare(blocked)
     found = [*neighbours(points, longest_m=150.0), *_nearest(points, 6)]
     pairs = np.array(list(dict.fromkeys((min(pair), max(pair)) for pair in found)))
-    room = shapely.buffer(inner, 3.0)
+    room = planar.buffer(inner, 3.0)
     shapely.prepare(room)
     sags = rng.normal(0, 0.1, len(pairs))
     left = np.arange(len(pairs))
@@ -281,13 +283,13 @@ def _paths(
         curves = bows(ends[:, 0], ends[:, 1], sag[left])
         lines = shapely.linestrings(curves)
         inside = shapely.contains(room, lines)
-        inside[~inside] = shapely.length(shapely.intersection(lines[~inside], room)) > 0.9 * shapely.length(
+        inside[~inside] = shapely.length(planar.intersection(lines[~inside], room)) > 0.9 * shapely.length(
             lines[~inside]
         )
         # Where a path begins and ends there is a wall near, the one with the door.
-        doors = shapely.buffer(shapely.multipoints(ends[inside]), 4.2, quad_segs=4)
+        doors = planar.buffer(shapely.multipoints(ends[inside]), 4.2, quad_segs=4)
         good = inside.copy()
-        good[inside] = ~shapely.intersects(blocked, shapely.difference(lines[inside], doors))
+        good[inside] = ~shapely.intersects(blocked, planar.difference(lines[inside], doors))
         for curve in curves[good]:
             sketch.pave(curve, 2.4, Ground.PATH)
         left = left[~good]

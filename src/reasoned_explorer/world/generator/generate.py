@@ -8,6 +8,7 @@ import shapely
 from numpy.typing import NDArray
 
 from reasoned_explorer.model.stopping import stop_if_asked
+from reasoned_explorer.world.generator import planar
 from reasoned_explorer.world.generator.affinity import Pull, Statistics
 from reasoned_explorer.world.generator.assemble import buildings_of, ground_of, regions_of, rings_of, ways_of
 from reasoned_explorer.world.generator.furniture import Furnisher, Thing, standing_size
@@ -120,7 +121,7 @@ def _stand_areas(sketch: Sketch, furnisher: Furnisher) -> None:
     chosen = [patch for patch in sketch.patches if patch.role in _AREA_CLASS]
     if not chosen:
         return
-    inside = shapely.intersection(np.array([patch.area for patch in chosen]), sketch.box)
+    inside = planar.intersection(np.array([patch.area for patch in chosen]), sketch.box)
     spots = [area.representative_point() for area in inside]
     zones = zone_of(sketch, shapely.get_coordinates(spots))
     for patch, area, spot, zone in zip(chosen, inside, spots, zones.tolist(), strict=True):
@@ -169,7 +170,7 @@ def _stand_fixtures(sketch: Sketch, plan: GroundPlan, furnisher: Furnisher) -> N
     if not sketch.fixtures:
         return
     points = np.array([(item.x_m, item.y_m) for item in sketch.fixtures])
-    inside = shapely.contains_xy(shapely.buffer(sketch.box, -3.0), points)
+    inside = shapely.contains_xy(planar.buffer(sketch.box, -3.0), points)
     inside &= ~np.isin(plan.at(points), [Ground.ROAD, Ground.WATER, Ground.BUILDING])
     zones = zone_of(sketch, points)
     for item, zone, fits in zip(sketch.fixtures, zones.tolist(), inside.tolist(), strict=True):

@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from reasoned_explorer.world.generator import planar
 from reasoned_explorer.world.generator.ground import GroundPlan
 from reasoned_explorer.world.generator.shapes import Points, along, left_of, spread, thin
 from reasoned_explorer.world.generator.sketch import Sketch
@@ -52,7 +53,7 @@ def plant_trees(sketch: Sketch, plan: GroundPlan) -> tuple[Points, NDArray[np.fl
     points = np.vstack([at for at, _, _ in stands])
     crowns = np.concatenate([crown for _, crown, _ in stands])
     clear = np.concatenate([np.full(len(at), margin) for at, _, margin in stands])
-    good = np.isin(plan.at(points), _TREE_GROUND) & shapely.contains_xy(shapely.buffer(sketch.box, -0.6), points)
+    good = np.isin(plan.at(points), _TREE_GROUND) & shapely.contains_xy(planar.buffer(sketch.box, -0.6), points)
     good &= _clear_of_paths(sketch, points, clear)
     good &= ~plan.by_a_wall(points, 2.2)
     points, crowns = points[good], crowns[good]
@@ -89,7 +90,7 @@ def _patch_trees(sketch: Sketch) -> Iterator[_Stand]:
         if patch.role in _PLANTING:
             rng = sketch.rng("patch trees", index)
             spacing, share = _PLANTING[patch.role]
-            at = spread(rng, shapely.buffer(patch.area, -1.5), spacing)
+            at = spread(rng, planar.buffer(patch.area, -1.5), spacing)
             at = at[rng.random(len(at)) < share]
             yield at, rng.gamma(9.0, 0.62, len(at)) + 1.2, 0.6 if patch.role == "wood" else 1.0
 
@@ -101,7 +102,7 @@ def plant_bushes(sketch: Sketch, plan: GroundPlan) -> tuple[Points, NDArray[np.f
         if patch.role in _BUSHES:
             rng = sketch.rng("bushes", index)
             spacing, share = _BUSHES[patch.role]
-            at = spread(rng, shapely.buffer(patch.area, -1.0), spacing)
+            at = spread(rng, planar.buffer(patch.area, -1.0), spacing)
             at = at[rng.random(len(at)) < share]
             spots.append(at)
             sizes.append(rng.uniform(0.8, 2.0, len(at)))
@@ -110,7 +111,7 @@ def plant_bushes(sketch: Sketch, plan: GroundPlan) -> tuple[Points, NDArray[np.f
     points = np.vstack(spots)
     width: NDArray[np.float64] = np.round(np.concatenate(sizes).astype(float), 1)
     good = np.isin(plan.at(points), (Ground.GRASS, Ground.WOOD, Ground.GARDEN, Ground.YARD))
-    good &= shapely.contains_xy(shapely.buffer(sketch.box, -1.2), points)
+    good &= shapely.contains_xy(planar.buffer(sketch.box, -1.2), points)
     good &= _clear_of_paths(sketch, points, np.full(len(points), 1.3))
     good &= ~plan.by_a_wall(points, 1.3)
     return points[good], width[good]
@@ -123,7 +124,7 @@ def _clear_of_paths(sketch: Sketch, points: Points, margins: NDArray[np.float64]
     lines += [(street.line, street.road_m) for street in sketch.streets if street.road_m > 0]
     if not lines or not len(points):
         return clear
-    beds = shapely.buffer(
+    beds = planar.buffer(
         [shapely.LineString(line) for line, _ in lines],
         np.array([width / 2 for _, width in lines]) + 0.5,
         quad_segs=2,

@@ -7,6 +7,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely import LineString, Polygon
 
+from reasoned_explorer.world.generator import planar
 from reasoned_explorer.world.generator.shapes import Points
 from reasoned_explorer.world.raster import Canvas
 from reasoned_explorer.world.taxonomy import Ground
@@ -42,7 +43,7 @@ class GroundPlan:
     ) -> None:
         lines = np.array([LineString(way.line) for way in ways], dtype=object)
         widths = np.array([way.width_m for way in ways], float)
-        beds = shapely.buffer(lines, widths / 2, quad_segs=3, cap_style="flat") if len(ways) else []
+        beds = planar.buffer(lines, widths / 2, quad_segs=3, cap_style="flat") if len(ways) else []
         codes = [*grounds, *(way.ground for way in ways), *([Ground.BUILDING] * len(walls))]
         #: South-west corner, metres.
         self.origin = (float(box.bounds[0]), float(box.bounds[1]))

@@ -7,6 +7,7 @@ import shapely
 from numpy.random import Generator
 from shapely import LineString, Polygon
 
+from reasoned_explorer.world.generator import planar
 from reasoned_explorer.world.generator.blocks import Fabric, blocks_between, fill_blocks
 from reasoned_explorer.world.generator.shapes import (
     Points,
@@ -15,7 +16,6 @@ from reasoned_explorer.world.generator.shapes import (
     bow,
     footprint,
     inner_circle,
-    lines_of,
     placed,
     polygons_of,
     smooth,
@@ -60,8 +60,8 @@ def fill_park(sketch: Sketch, rng: Generator, cell: Polygon, area: Polygon, *, f
     lines = path_web(rng, park)
     for line, width in lines:
         sketch.pave(line, width, Ground.PATH, "footway")
-    web = shapely.union_all([LineString(line).buffer(width / 2 + 0.3, quad_segs=2) for line, width in lines])
-    meshes = [mesh for mesh in polygons_of(shapely.difference(park, web)) if mesh.area > 120.0]
+    web = planar.union_all([planar.buffer(LineString(line), width / 2 + 0.3, quad_segs=2) for line, width in lines])
+    meshes = [mesh for mesh in polygons_of(planar.difference(park, web)) if mesh.area > 120.0]
     meshes.sort(key=lambda mesh: (round(-mesh.area, 2), round(mesh.centroid.x, 2)))
     _fill_meshes(sketch, rng, meshes)
     _junction_squares(sketch, rng, park, lines, bottom)
@@ -96,9 +96,9 @@ def path_web(rng: Generator, park: Polygon) -> list[tuple[Points, float]]:
     gate_count = max(4, round(outline.length / 150.0))
     offsets = (np.arange(gate_count) + rng.uniform(-0.25, 0.25, gate_count)) / gate_count
     gates = np.array([outline.interpolate(float(share) % 1.0, normalized=True).coords[0] for share in offsets])
-    inner = shapely.buffer(park, -26.0)
+    inner = planar.buffer(park, -26.0)
     if inner.is_empty:
-        inner = shapely.buffer(park, -inner_circle(park)[2] * 0.5)
+        inner = planar.buffer(park, -inner_circle(park)[2] * 0.5)
     nodes = spread(rng, max(polygons_of(inner), key=lambda part: part.area), 66.0, jitter=0.3)
     nodes = nodes[thin(nodes, 40.0)]
     points = np.vstack([gates, nodes]) if len(nodes) else np.vstack([gates, [park.centroid.coords[0]]])
@@ -112,19 +112,19 @@ def path_web(rng: Generator, park: Polygon) -> list[tuple[Points, float]]:
     start = int(rng.integers(gate_count))
     end = (start + gate_count // 2) % gate_count
     lines.append((np.vstack([gates[start], gates[end]]), 4.5))
-    loop = shapely.buffer(shapely.buffer(park, -24.0), 9.0)
+    loop = planar.buffer(planar.buffer(park, -24.0), 9.0)
     for part in polygons_of(loop):
         knots, _ = along(np.asarray(part.exterior.coords), part.exterior.length / max(6, part.exterior.length // 42))
         knots = knots + rng.uniform(-4.0, 4.0, knots.shape)
         ring = smooth(knots, closed=True)
         lines.append((np.vstack([ring, ring[:1]]), 3.0))
     # Wherever a web's edge left the park through a bent border it is cut off.
-    room = shapely.buffer(park, 4.0)
-    return [(part, width) for line, width in lines for part in lines_of(shapely.intersection(LineString(line), room))]
+    room = planar.buffer(park, 4.0)
+    return [(part, width) for line, width in lines for part in planar.lines_within(line, room)]
 
 
 def _rounded(mesh: Polygon, margin_m: float, radius_m: float) -> list[Polygon]:
-    return polygons_of(shapely.buffer(shapely.buffer(mesh, -margin_m - radius_m), radius_m))
+    return polygons_of(planar.buffer(planar.buffer(mesh, -margin_m - radius_m), radius_m))
 
 
 def _fill_meshes(sketch: Sketch, rng: Generator, meshes: list[Polygon]) -> None:
@@ -160,10 +160,10 @@ def lay_mesh(sketch: Sketch, rng: Generator, mesh: Polygon, use: str) -> None:
     """
     x, y, radius = inner_circle(mesh)
     if use == "pond":
-        shape = shapely.intersection(
-            shapely.union_all(_rounded(mesh, 7.0, 5.0)), blob(rng, x, y, radius * 1.25, roughness=0.3)
+        shape = planar.intersection(
+            planar.union_all(_rounded(mesh, 7.0, 5.0)), blob(rng, x, y, radius * 1.25, roughness=0.3)
         )
-        sketch.lay(Ground.WATER, shapely.buffer(shapely.buffer(shape, -2.0), 2.0), "pond", name="Pond")
+        sketch.lay(Ground.WATER, planar.buffer(planar.buffer(shape, -2.0), 2.0), "pond", name="Pond")
     elif use == "pitch":
         _pitch(sketch, rng, mesh)
     elif use == "playground":
@@ -173,7 +173,7 @@ def lay_mesh(sketch: Sketch, rng: Generator, mesh: Polygon, use: str) -> None:
     else:
         ground = {"wood": Ground.WOOD, "garden": Ground.GARDEN}.get(use, Ground.GRASS)
         margin, radius = {"wood": (1.0, 4.0), "garden": (4.0, 3.0)}.get(use, (0.5, 1.5))
-        sketch.lay(ground, shapely.union_all(_rounded(mesh, margin, radius)), use)
+        sketch.lay(ground, planar.union_all(_rounded(mesh, margin, radius)), use)
 
 
 def _pavilion(sketch: Sketch, rng: Generator, mesh: Polygon) -> None:
@@ -196,7 +196,7 @@ def _pitch(sketch: Sketch, rng: Generator, mesh: Polygon) -> None:
     for scale in (1.5, 1.2, 1.0, 0.8):
         for heading in (angle, angle + math.pi / 2, float(rng.uniform(0, math.pi))):
             ring = placed(footprint("rect", radius * scale, radius * scale * 0.62, 1.0), x, y, heading)
-            if ring.within(shapely.buffer(mesh, -2.0)):
+            if ring.within(planar.buffer(mesh, -2.0)):
                 sketch.lay(Ground.PITCH, ring, "pitch")
                 return
 
@@ -206,7 +206,7 @@ def _junction_squares(
 ) -> None:
     """Widen a few places where paths meet into small round squares with something in the middle."""
     ends = np.vstack([line[[0, -1]] for line, _ in lines])
-    inside = ends[shapely.contains_xy(shapely.buffer(park, -20.0), ends)]
+    inside = ends[shapely.contains_xy(planar.buffer(park, -20.0), ends)]
     if not len(inside):
         return
     points, counts = np.unique(np.round(inside, 2), axis=0, return_counts=True)
@@ -214,7 +214,7 @@ def _junction_squares(
     taken: list[Points] = []
     centres = ["fountain", "artwork", "planter", "monument", "planter"]
     solid = (Ground.WATER, Ground.PITCH, Ground.PLAYGROUND)
-    blocked = shapely.union_all(
+    blocked = planar.union_all(
         [patch.area for patch in sketch.patches[start[0] :] if patch.ground in solid]
         + [item.area for item in sketch.footprints[start[1] :]]
     )
@@ -222,7 +222,7 @@ def _junction_squares(
         point = points[index]
         if len(taken) >= max(2, round(park.area / 26_000.0)):
             break
-        disc = shapely.points(point).buffer(float(rng.uniform(6.0, 9.0)))
+        disc = planar.buffer(shapely.points(point), float(rng.uniform(6.0, 9.0)))
         if any(np.hypot(*(point - other)) < 60.0 for other in taken) or disc.intersects(blocked):
             continue
         sketch.lay(Ground.PLAZA, disc, "rondel")

@@ -8,6 +8,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 from shapely import LineString, Polygon
 
+from reasoned_explorer.world.generator import planar
 from reasoned_explorer.world.generator.blocks import Fabric, blocks_between, garden_block, height_of, landmark_block
 from reasoned_explorer.world.generator.shapes import Points, along, bow, footprint, heading_of, left_of, placed
 from reasoned_explorer.world.generator.sketch import Footprint, Sketch, Street
@@ -42,11 +43,11 @@ def fill_residential(sketch: Sketch, rng: Generator, cell: Polygon, area: Polygo
     blocks = blocks_between(area, sketch.beds(streets))
     stubs = _dead_ends(sketch, rng, blocks)
     for street in stubs:
-        bulb = shapely.points(street.line[-1]).buffer(9.5)
-        sketch.lay(Ground.PAVEMENT, bulb.buffer(1.8))
+        bulb = planar.buffer(shapely.points(street.line[-1]), 9.5)
+        sketch.lay(Ground.PAVEMENT, planar.buffer(bulb, 1.8))
         sketch.lay(Ground.ROAD, bulb)
-    beds = shapely.union_all(
-        [sketch.beds([*streets, *stubs]), *(shapely.points(s.line[-1]).buffer(11.3) for s in stubs)]
+    beds = planar.union_all(
+        [sketch.beds([*streets, *stubs]), *(planar.buffer(shapely.points(s.line[-1]), 11.3) for s in stubs)]
     )
     blocks = blocks_between(area, beds)
     houses: list[Polygon] = []
@@ -100,7 +101,7 @@ def _dead_ends(sketch: Sketch, rng: Generator, blocks: list[Polygon]) -> list[St
         start = middle - inward * 14.0
         end = middle + inward * reach
         line = bow(start, end, float(rng.uniform(-0.08, 0.08)))
-        if shapely.buffer(shapely.points(end), 30.0).within(shapely.buffer(block, 6.0)):
+        if planar.buffer(shapely.points(end), 30.0).within(planar.buffer(block, 6.0)):
             before = len(sketch.streets)
             add_street(sketch, rng, line, "living_street", trees=0.0)
             made += sketch.streets[before : before + 1]
@@ -117,7 +118,7 @@ def _houses(sketch: Sketch, rng: Generator, block: Polygon, houses: list[Polygon
     normals = left_of(tangents)
     shapely.prepare(block)
     mine: list[Polygon] = []
-    room = shapely.buffer(block, -2.5)
+    room = planar.buffer(block, -2.5)
     shapely.prepare(room)
     for index in np.flatnonzero(_off_border(sketch, at)).tolist():
         kind = "rect" if terraced else str(rng.choice(["rect", "rect", "l", "l", "t"]))
@@ -129,7 +130,7 @@ def _houses(sketch: Sketch, rng: Generator, block: Polygon, houses: list[Polygon
         area = placed(footprint(kind, width, depth, 5.5), float(x), float(y), heading)
         if not room.contains(area):
             continue
-        core = area.buffer(-0.4) if terraced else area.buffer(2.4, quad_segs=2)
+        core = planar.buffer(area, -0.4) if terraced else planar.buffer(area, 2.4, quad_segs=2)
         if mine and shapely.intersects(core, mine).any():
             continue
         mine.append(area)
@@ -172,12 +173,12 @@ def _flats(sketch: Sketch, rng: Generator, block: Polygon) -> None:
     long_m = float(np.hypot(*step))
     heading = float(math.atan2(*step)) + math.pi / 2
     centre = np.array(block.centroid.coords[0])
-    room = shapely.buffer(block, -5.0)
+    room = planar.buffer(block, -5.0)
     count = max(1, int(long_m // 44.0))
     for index in range(count):
         x, y = centre + step / long_m * ((index + 0.5) / count - 0.5) * long_m
         if index % 3 == 2 or (index == 1 and count < 4):
-            spot = shapely.points(x, y).buffer(9.0)
+            spot = planar.buffer(shapely.points(x, y), 9.0)
             if spot.within(room):
                 sketch.lay(Ground.PLAYGROUND, spot, "playground")
             continue
@@ -186,5 +187,5 @@ def _flats(sketch: Sketch, rng: Generator, block: Polygon) -> None:
             door = np.array([x, y]) + np.array([math.sin(heading), math.cos(heading)]) * 6.5
             sketch.build(Footprint(slab, height_of(rng, (3, 6)), "residential", "apartments", (door[0], door[1])))
             way = np.asarray(shapely.shortest_line(shapely.points(door), block.exterior).coords)
-            if not LineString(way).crosses(slab.buffer(-0.2)):
+            if not LineString(way).crosses(planar.buffer(slab, -0.2)):
                 sketch.pave(np.vstack([way[0], way[1] + (way[1] - way[0]) * 0.08]), 2.2, Ground.PATH)

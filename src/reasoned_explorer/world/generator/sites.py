@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from reasoned_explorer.world.generator import planar
 from reasoned_explorer.world.generator.ground import Codes, GroundPlan
 from reasoned_explorer.world.generator.shapes import Points, along, along_many, heading_of, left_of, spread
 from reasoned_explorer.world.generator.sketch import Sketch
@@ -132,7 +133,7 @@ def _area_sites(sketch: Sketch, found: _Collector) -> None:
             outward = left_of(tangents) * (1.0 if not patch.area.exterior.is_ccw else -1.0)
             found.add(at + 0.8 * outward, heading_of(-outward), role)
             continue
-        at = spread(rng, shapely.buffer(patch.area, -1.2), spacing)
+        at = spread(rng, planar.buffer(patch.area, -1.2), spacing)
         found.add(at, rng.uniform(0, 2 * np.pi, len(at)), role)
         if role is Role.PLAY:
             at, tangents = along(np.asarray(patch.area.exterior.coords), 3.5)
@@ -172,7 +173,7 @@ def _checked(sketch: Sketch, plan: GroundPlan, found: _Collector) -> Sites:
     doors, looks, homes = _wall_sites(sketch, plan, found)
     points = np.vstack(found.points) if found.points else np.empty((0, 2))
     headings, roles = np.concatenate(found.facing), np.concatenate(found.roles)
-    inside = shapely.contains_xy(shapely.buffer(sketch.box, -0.8), points)
+    inside = shapely.contains_xy(planar.buffer(sketch.box, -0.8), points)
     points, headings, roles = points[inside], headings[inside], roles[inside]
     grounds = plan.at(points)
     table = np.zeros((len(Role), len(Ground)), bool)

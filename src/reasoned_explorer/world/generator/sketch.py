@@ -9,7 +9,8 @@ from numpy.random import PCG64, Generator
 from shapely import LineString, Polygon
 
 from reasoned_explorer.model.draws import key_of
-from reasoned_explorer.world.generator.shapes import Points, lines_of, polygons_of
+from reasoned_explorer.world.generator import planar
+from reasoned_explorer.world.generator.shapes import Points, polygons_of
 from reasoned_explorer.world.taxonomy import Ground
 
 Zone = Literal["downtown", "plaza", "park", "campus", "residential", "waterfront"]
@@ -149,7 +150,7 @@ class Sketch:
             if float(np.hypot(*np.diff(line, axis=0).T).sum()) > 1.0:
                 self.trails.append(Trail(np.array(line, float), width_m, ground, kind))
             return
-        for part in lines_of(shapely.intersection(LineString(line), self.box)):
+        for part in planar.lines_within(line, self.box):
             self.trails.append(Trail(part, width_m, ground, kind))
 
     def build(self, footprint: Footprint) -> None:
@@ -157,13 +158,13 @@ class Sketch:
         low_x, low_y, high_x, high_y = self.box.bounds
         min_x, min_y, max_x, max_y = footprint.area.bounds
         if min_x > low_x and min_y > low_y and max_x < high_x and max_y < high_y:
-            footprint.area = shapely.simplify(footprint.area, 0.05)
+            footprint.area = planar.simplify(footprint.area, 0.05)
             self.footprints.append(footprint)
             return
-        inside = shapely.intersection(footprint.area, self.box)
+        inside = planar.intersection(footprint.area, self.box)
         for part in polygons_of(inside):
             if part.area >= 0.55 * footprint.area.area or part.area > 80.0:
-                footprint.area = shapely.simplify(part, 0.05)
+                footprint.area = planar.simplify(part, 0.05)
                 self.footprints.append(footprint)
                 return
 
@@ -178,4 +179,4 @@ class Sketch:
             return Polygon()
         lines = [LineString(street.line) for street in chosen]
         halves = np.array([street.half_m for street in chosen])
-        return shapely.union_all(shapely.buffer(lines, halves, quad_segs=3, cap_style="flat", join_style="round"))
+        return planar.union_all(planar.buffer(lines, halves, quad_segs=3, cap_style="flat", join_style="round"))

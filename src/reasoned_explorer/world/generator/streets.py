@@ -9,7 +9,8 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 from shapely import LineString, Polygon
 
-from reasoned_explorer.world.generator.shapes import Points, bow, lines_of, smooth
+from reasoned_explorer.world.generator import planar
+from reasoned_explorer.world.generator.shapes import Points, bow, smooth
 from reasoned_explorer.world.generator.sketch import Sketch, Street, Trail
 from reasoned_explorer.world.taxonomy import Ground
 
@@ -57,10 +58,9 @@ def add_street(
     parking = kind in ("residential", "secondary", "living_street") and rng.random() < 0.85
     lined = {"primary": 0.9, "secondary": 0.7, "residential": 0.45, "living_street": 0.5, "pedestrian": 0.5}
     spacing = float(rng.uniform(10.0, 16.0)) if rng.random() < lined.get(kind, 0.0) else 0.0
-    cut = shapely.intersection(LineString(line), sketch.box if within is None else within)
     pieces = [
         Street(part, kind, road, pavement, parking, spacing if trees is None else trees, name)
-        for part in lines_of(shapely.line_merge(cut))
+        for part in planar.lines_within(line, sketch.box if within is None else within)
     ]
     sketch.streets.extend(pieces)
     return pieces
@@ -186,7 +186,7 @@ def junctions(streets: list[Street]) -> list[tuple[Points, int, int]]:
     order = np.lexsort((second, first))
     found: list[tuple[Points, int, int]] = []
     for one, other in zip(first[order].tolist(), second[order].tolist(), strict=True):
-        meeting = shapely.intersection(lines[one], lines[other])
+        meeting = planar.intersection(lines[one], lines[other])
         if meeting.is_empty:
             meeting = shapely.get_point(shapely.shortest_line(lines[one], lines[other]), 0)
         found.extend((point, one, other) for point in shapely.get_coordinates(meeting)[:2])
@@ -203,7 +203,7 @@ def add_crossings(sketch: Sketch) -> list[Crossing]:
     streets = sketch.streets
     lines = [LineString(street.line) for street in streets]
     made: list[Crossing] = []
-    inner = sketch.box.buffer(-3.0)
+    inner = planar.buffer(sketch.box, -3.0)
     for point, one, other in junctions(streets):
         for mine, theirs in ((one, other), (other, one)):
             if streets[mine].road_m <= 0:

@@ -7,6 +7,7 @@ import shapely
 from numpy.random import Generator
 from shapely import Polygon
 
+from reasoned_explorer.world.generator import planar
 from reasoned_explorer.world.generator.campus import fill_campus
 from reasoned_explorer.world.generator.park import fill_park
 from reasoned_explorer.world.generator.residential import fill_residential
@@ -55,14 +56,14 @@ def fill_town(sketch: Sketch) -> None:
     ]
     zones = _assign(rng, cells, sketch.box)
     for (i, j, cell), zone in zip(cells, zones, strict=True):
-        area = max(shapely.get_parts(shapely.difference(cell, beds)), key=lambda part: part.area)
+        area = max(shapely.get_parts(planar.difference(cell, beds)), key=lambda part: part.area)
         sketch.zones.append((zone, cell))
         FILLS[zone](sketch, sketch.rng("town", i, j), cell, area, framed=True)
     if shore:
-        strip = shapely.intersection(
+        strip = planar.intersection(
             Polygon([(min_x, min_y), (max_x, min_y), *[tuple(point) for point in nodes[::-1, 0]]]), sketch.box
         )
-        area = max(shapely.get_parts(shapely.difference(strip, beds)), key=lambda part: part.area)
+        area = max(shapely.get_parts(planar.difference(strip, beds)), key=lambda part: part.area)
         sketch.zones.append(("waterfront", strip))
         FILLS["waterfront"](sketch, sketch.rng("town", "shore"), strip, area, framed=True)
 

@@ -7,6 +7,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely import Polygon
 
+from reasoned_explorer.world.generator import planar
 from reasoned_explorer.world.generator.ground import GroundPlan
 from reasoned_explorer.world.generator.shapes import Points, along, heading_of, left_of, polygons_of, turned
 from reasoned_explorer.world.generator.sketch import Sketch
@@ -63,7 +64,11 @@ def _clear_kerb(sketch: Sketch, points: Points, crossings: list[Crossing]) -> ND
         close, _ = shapely.STRtree(drives).query(made, predicate="dwithin", distance=4.6)
         good[close] = False
     # Near a car only its own street may run: two carriageways within reach mean a junction.
-    beds = [shapely.LineString(street.line).buffer(street.road_m / 2) for street in sketch.streets if street.road_m > 0]
+    beds = [
+        planar.buffer(shapely.LineString(street.line), street.road_m / 2)
+        for street in sketch.streets
+        if street.road_m > 0
+    ]
     near, _ = shapely.STRtree(beds).query(made, predicate="dwithin", distance=4.0)
     good &= np.bincount(near, minlength=len(points)) <= 1
     return good
@@ -109,5 +114,5 @@ def _rows(lot: Polygon) -> tuple[Points, NDArray[np.float64]]:
     grid = np.array([(x, row) for row, _ in rows for x in xs])
     at = turned(grid, angle) + centre
     heading = np.repeat([(-angle + turn) % (2 * math.pi) for _, turn in rows], len(xs))
-    inside = shapely.contains_xy(shapely.buffer(lot, -0.8), at)
+    inside = shapely.contains_xy(planar.buffer(lot, -0.8), at)
     return at[inside], heading[inside]

@@ -7,6 +7,7 @@ import shapely
 from numpy.random import Generator
 from shapely import LineString, Polygon
 
+from reasoned_explorer.world.generator import planar
 from reasoned_explorer.world.generator.blocks import Fabric, blocks_between, fill_blocks, perimeter_block
 from reasoned_explorer.world.generator.shapes import Points, along, blob, polygons_of, smooth
 from reasoned_explorer.world.generator.sketch import Footprint, Sketch, Street
@@ -78,7 +79,7 @@ def fill_plaza(sketch: Sketch, rng: Generator, cell: Polygon, area: Polygon, *, 
     square, streets = _square_in_grid(sketch, rng, cell, framed=framed)
     sketch.lay(Ground.PLAZA, square, "plaza", name="Market Square")
     beds = sketch.beds(streets)
-    blocks = blocks_between(area, shapely.union_all([beds, square]))
+    blocks = blocks_between(area, planar.union_all([beds, square]))
     fabric = Fabric("plaza", (3, 5), squares=0.02, gardens=0.05, carparks=0.03, landmarks=0.08, frontage_m=(9.0, 17.0))
     facing = [block for block in blocks if block.distance(square) < 3.0 and block.area > 300.0]
     fill_blocks(sketch, rng, [block for block in blocks if block not in facing], fabric)
@@ -110,29 +111,29 @@ def _square_in_grid(sketch: Sketch, rng: Generator, cell: Polygon, *, framed: bo
     i, j = int(found[0]), int(found[1])
     south, north = nodes[i : i + across + 1, j], nodes[i : i + across + 1, j + up][::-1]
     east, west = nodes[i + across, j + 1 : j + up], nodes[i, j + 1 : j + up][::-1]
-    square = shapely.buffer(Polygon(np.vstack([south, east, north, west])), 3.5, join_style="mitre")
-    square = shapely.intersection(square, cell)
+    square = planar.buffer(Polygon(np.vstack([south, east, north, west])), 3.5, join_style="mitre")
+    square = planar.intersection(square, cell)
     walking = (int(rng.integers(i, i + across + 1)), int(rng.integers(j, j + up + 1)))
 
     def kind_of(axis: int, index: int) -> str:
         return "pedestrian" if index == walking[1 - axis] else "residential" if index % 2 else "living_street"
 
-    room = shapely.difference(cell, shapely.buffer(square, -1.0))
+    room = planar.difference(cell, planar.buffer(square, -1.0))
     return square, draw_grid(sketch, rng, nodes, within=room, kind_of=kind_of, missing=0.1, frame=framed)
 
 
 def _arcades(sketch: Sketch, rng: Generator, square: Polygon) -> None:
     """Roof the edge of a square over along one or two of its sides, where buildings stand behind."""
     ring = np.asarray(square.exterior.coords)
-    built = shapely.union_all([item.area for item in sketch.footprints if item.area.distance(square) < 2.0])
+    built = planar.union_all([item.area for item in sketch.footprints if item.area.distance(square) < 2.0])
     for side in rng.permutation(len(ring) - 1)[: int(rng.integers(2, 4))].tolist():
         a, b = ring[side], ring[side + 1]
         inward = np.array(square.centroid.coords[0]) - (a + b) / 2
         normal = np.array([a[1] - b[1], b[0] - a[0]])
         normal = normal / np.hypot(*normal) * np.sign(normal @ inward)
         strip = Polygon([a, b, b + 4.2 * normal, a + 4.2 * normal])
-        behind = shapely.intersection(strip.buffer(1.5), built.buffer(1.5))
-        covered = shapely.intersection(strip, shapely.buffer(behind, 3.0))
+        behind = planar.intersection(planar.buffer(strip, 1.5), planar.buffer(built, 1.5))
+        covered = planar.intersection(strip, planar.buffer(behind, 3.0))
         for part in polygons_of(covered):
             if part.area > 60.0:
                 sketch.build(Footprint(part, 5.2, "plaza", "roof", min_height_m=4.2))
@@ -140,13 +141,13 @@ def _arcades(sketch: Sketch, rng: Generator, square: Polygon) -> None:
 
 def _furnish_square(sketch: Sketch, rng: Generator, square: Polygon) -> None:
     """Give a great square its fountain, its monument, a few market stalls and trees in a row."""
-    inner = shapely.buffer(square, -12.0)
+    inner = planar.buffer(square, -12.0)
     centre = np.array(square.centroid.coords[0])
     points = [centre + rng.uniform(-4, 4, 2), *(centre + rng.uniform(-0.35, 0.35, 2) * 90 for _ in range(3))]
     for name, point in zip(("fountain", "monument", "kiosk", "artwork"), points, strict=True):
         if inner.contains(shapely.points(point)):
             sketch.put(name, float(point[0]), float(point[1]), float(rng.uniform(0, 6.28)))
-    ring = LineString(np.asarray(shapely.buffer(square, -9.0, join_style="mitre").exterior.coords)[:3])
+    ring = LineString(np.asarray(planar.buffer(square, -9.0, join_style="mitre").exterior.coords)[:3])
     at, _ = along(np.asarray(ring.coords), float(rng.uniform(7.5, 10.0)))
     for x, y in at:
         sketch.put("tree", x, y)
@@ -175,7 +176,7 @@ def fill_waterfront(sketch: Sketch, rng: Generator, cell: Polygon, area: Polygon
         return warp(np.column_stack([u, np.full_like(u, v)]))
 
     def band(low: float, high: float) -> Polygon:
-        return shapely.intersection(Polygon(np.vstack([line_at(low), line_at(high)[::-1]])), cell)
+        return planar.intersection(Polygon(np.vstack([line_at(low), line_at(high)[::-1]])), cell)
 
     walk = float(rng.uniform(9.0, 14.0))
     green = float(rng.uniform(9.0, 16.0))
@@ -198,7 +199,7 @@ def fill_waterfront(sketch: Sketch, rng: Generator, cell: Polygon, area: Polygon
         streets += add_street(sketch, rng, np.vstack([nodes[column], tail]), "residential", within=cell)
         foot = warp(np.array([[us[column], walk - 1.0]]))[0]
         sketch.pave(np.array([foot, nodes[column, 0] - (0.0, 6.0)]), 4.0, Ground.PAVEMENT)
-    inland = shapely.difference(area, band(-height * 2, quay))
+    inland = planar.difference(area, band(-height * 2, quay))
     fabric = Fabric("waterfront", (4, 8), squares=0.06, gardens=0.1, carparks=0.05, landmarks=0.05, towers=0.06)
     fill_blocks(sketch, rng, blocks_between(inland, sketch.beds(streets)), fabric)
     _piers(sketch, rng, cell, warp, width)
@@ -212,11 +213,11 @@ def _piers(sketch: Sketch, rng: Generator, cell: Polygon, warp: Warp, width: flo
         foot = warp(np.array([[u, 3.0]]))[0]
         length = float(rng.uniform(35.0, 70.0))
         end = foot - (rng.uniform(-0.15, 0.15) * length, length)
-        deck = LineString([foot, end]).buffer(float(rng.uniform(2.6, 3.6)), cap_style="flat")
+        deck = planar.buffer(LineString([foot, end]), float(rng.uniform(2.6, 3.6)), cap_style="flat")
         if rng.random() < 0.6:
             across = np.array([(end[0] - 12.0, end[1] + 2.0), (end[0] + 12.0, end[1] + 2.0)])
-            deck = shapely.union(deck, LineString(across).buffer(3.5, cap_style="flat"))
-        sketch.lay(Ground.PAVEMENT, shapely.intersection(deck, cell), "pier")
+            deck = planar.union(deck, planar.buffer(LineString(across), 3.5, cap_style="flat"))
+        sketch.lay(Ground.PAVEMENT, planar.intersection(deck, cell), "pier")
 
 
 def _shore_features(sketch: Sketch, rng: Generator, warp: Warp, sizes: tuple[float, float, float]) -> None:
@@ -226,9 +227,9 @@ def _shore_features(sketch: Sketch, rng: Generator, warp: Warp, sizes: tuple[flo
     beach = Polygon(
         smooth(warp(np.array([(u - 55, 0.5), (u - 20, -13), (u + 22, -14), (u + 58, 0.5), (u, 2.0)])), closed=True)
     )
-    water = shapely.union_all([patch.area for patch in sketch.patches if patch.role == "sea"])
-    piers = shapely.union_all([patch.area.buffer(1.0) for patch in sketch.patches if patch.role == "pier"])
-    sketch.lay(Ground.SAND, shapely.difference(shapely.intersection(beach, water.buffer(0.6)), piers), "beach")
+    water = planar.union_all([patch.area for patch in sketch.patches if patch.role == "sea"])
+    piers = planar.union_all([planar.buffer(patch.area, 1.0) for patch in sketch.patches if patch.role == "pier"])
+    sketch.lay(Ground.SAND, planar.difference(planar.intersection(beach, planar.buffer(water, 0.6)), piers), "beach")
     u = (u + width * float(rng.uniform(0.3, 0.6))) % width
     x, y = warp(np.array([[u, walk + green / 2]]))[0]
     sketch.lay(Ground.PLAZA, blob(rng, x, y, min(12.0, green)), "terrace")
