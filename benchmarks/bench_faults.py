@@ -56,7 +56,7 @@ GOALS = ("Find me a bench", "Find me a tree", "Find me somewhere to take a nap",
 
 def run_all(behaviour: Behaviour, *, missions: int, steps: int, at_once: int) -> list[MissionResult]:
     """Run missions against a server of a behaviour, in order of their seeds."""
-    atlases = [Atlas(open_world(f"{district}:41@300")) for district in ("park", "plaza")]
+    atlases = [Atlas(open_world(f"{district}:42@300")) for district in ("park", "plaza")]
     with StubServer(behaviour) as server, ThreadPoolExecutor(at_once) as pool:
 
         def run(number: int) -> MissionResult:

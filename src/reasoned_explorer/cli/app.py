@@ -107,7 +107,7 @@ def run(
     conditions: Annotated[str, typer.Option(help="In pictures: clear, overcast, dusk, fog or rain.")] = "clear",
     eyes: Annotated[
         str, typer.Option(help="What simulated captioners go by: lines or pixels; see rex names.")
-    ] = "lines",
+    ] = "pixels",
     yes: Yes = False,
     map_: Annotated[bool, typer.Option("--map/--no-map", help="Draw the map picture.")] = True,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the summary.")] = False,

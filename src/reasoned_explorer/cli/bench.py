@@ -81,7 +81,7 @@ class BenchOptions:
     captioner: str = "noisy"
     picture_px: int = 448
     conditions: str = "clear"
-    eyes: str = "lines"
+    eyes: str = "pixels"
     vehicle: str = "drone"
     latency: str = "gpt-2023"
     clock: str | None = None

@@ -107,7 +107,7 @@ def bench(
     conditions: Annotated[str, typer.Option(help="In pictures: clear, overcast, dusk, fog or rain.")] = "clear",
     eyes: Annotated[
         str, typer.Option(help="What simulated captioners go by: lines or pixels; see rex names.")
-    ] = "lines",
+    ] = "pixels",
     yes: Yes = False,
     vehicle: Annotated[str, typer.Option(help="Vehicle profiles with commas; each has a table of its own.")] = "drone",
     latency: Annotated[str, typer.Option(help="How long modelled calls take; see rex names.")] = "gpt-2023",

@@ -77,7 +77,7 @@ class MissionSettings:
     agent: str = "explorer"
     picture_px: int = 448
     conditions: str = "clear"
-    eyes: str = "lines"
+    eyes: str = "pixels"
 
 
 def errors_of(settings: MissionSettings) -> tuple[InputError, ...]:
