@@ -25,6 +25,12 @@ def test_an_unknown_name_lists_those_that_there_are() -> None:
         PARTS.load("goood")
 
 
+def test_what_may_be_said_instead_of_a_name_is_told_beside_the_names() -> None:
+    parts = Registry("part", "parts-that-nobody-brings", (Entry("good", "builtins:list"),), beside="a part's number")
+    with pytest.raises(UnknownNameError, match="expected one of good, or a part's number"):
+        parts.load("bad")
+
+
 @pytest.mark.parametrize("name", ["gone", "empty", "number"])
 def test_an_entry_that_cannot_be_used_says_what_is_wrong_with_it(name: str) -> None:
     with pytest.raises(InputError):

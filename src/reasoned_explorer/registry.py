@@ -38,10 +38,12 @@ class Registry:
         kind: Singular, for messages: ``"planner"``.
         group: Plural, for entry points: ``"planners"``.
         builtin: The entries that this package brings.
+        beside: What people may say instead of a registered name, for messages; may be empty.
     """
 
-    def __init__(self, kind: str, group: str, builtin: tuple[Entry, ...]) -> None:
+    def __init__(self, kind: str, group: str, builtin: tuple[Entry, ...], *, beside: str = "") -> None:
         self.kind = kind
+        self._beside = beside
         self._group = f"reasoned_explorer.{group}"
         self._entries = {entry.name: entry for entry in builtin}
         self._searched = False
@@ -65,7 +67,7 @@ class Registry:
         if name not in self._entries:
             self._search()
         if name not in self._entries:
-            raise UnknownNameError(self.kind, name, self.names())
+            raise UnknownNameError(self.kind, name, self.names(), beside=self._beside)
         entry = self._entries[name]
         module_name, _, attribute = entry.target.partition(":")
         try:

@@ -80,7 +80,7 @@ def test_everything_wrong_with_a_budget_is_said_before_anything_is_spent() -> No
     assert "--budget-minutes" in str(faults[2])
     assert faults_of_budget(None, 30, ["openai:new-model"]) == []
     for wrong in (0, "5", True):
-        with pytest.raises(SettingsError, match="a number above 0"):
+        with pytest.raises(SettingsError, match="a finite number above 0"):
             Budget(usd=wrong)  # type: ignore[arg-type]
 
 

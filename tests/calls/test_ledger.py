@@ -1,3 +1,4 @@
+from reasoned_explorer.calls.ledger import lost_calls
 from reasoned_explorer.minds import CallRecord, Ledger
 
 
@@ -25,6 +26,14 @@ def test_calls_without_a_known_price_are_counted_and_not_taken_for_free():
         ledger.add(CallRecord("checker", "m", (0,), 0.0, 0.1, usd=usd))
     total = ledger.totals()["checker"]
     assert (total.usd, total.unpriced) == (0.01, 1)
+
+
+def test_calls_are_lost_where_a_real_model_has_no_answer():
+    answered = CallRecord("checker", "openai:m", (0,), 0.0, 0.1)
+    lost = CallRecord("caption", "hf:m", (1,), 0.0, 0.1, fault="empty: no text")
+    # A mind of this package that cannot answer has not lost a call: nobody was called.
+    modelled = CallRecord("evaluator", "embedded", (1,), 0.0, 0.1, fault="the scene has no description")
+    assert lost_calls([answered, lost, modelled]) == [lost]
 
 
 def test_what_a_step_added_can_be_had_alone():

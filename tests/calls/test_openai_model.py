@@ -134,6 +134,19 @@ def test_what_stays_is_a_fault_of_its_own_kind(word: str, fault: str, asked: int
     assert answer.retries == asked - 1
 
 
+def test_an_address_without_v1_that_is_not_found_is_asked_about() -> None:
+    async def refused(base_url: str) -> str | None:
+        return (await OpenAIModel("tiny", Endpoint(base_url), settings=QUICK).ask(question())).fault
+
+    with StubServer(Behaviour(script=("404",))) as server:
+        root = server.base_url.removesuffix("/v1")
+        faults = [asyncio.run(refused(url)) for url in (root, f"{root}/api", server.base_url)]
+    assert str(faults[0]).endswith(f"; did you mean {root}/v1?")
+    assert str(faults[1]).endswith(f"; did you mean {root}/api/v1?")
+    # What is not found where it is usually served is another matter, a model say.
+    assert faults[2] == "rejected: status 404: The model does not exist"
+
+
 def test_a_server_that_always_turns_away_is_given_up_in_the_end() -> None:
     settings = AskingSettings(patience_s=0.3)
     with StubServer(Behaviour(script=("429 at once",) * 100_000)) as server:

@@ -64,6 +64,27 @@ def test_all_that_is_wrong_with_a_table_is_told(tmp_path: Path) -> None:
     assert "usd_per_million_in" in str(caught.value)
 
 
+def test_a_price_in_quotes_and_a_second_price_are_told_together(tmp_path: Path) -> None:
+    file = tmp_path / "prices.toml"
+    again = TABLE.replace("example.org", "Example.ORG").replace("2.5", "'2.5'")
+    file.write_text(TABLE.replace("= 1\n", "= '1'\n") + again)
+    with pytest.raises(SettingsError) as caught:
+        read_prices(file)
+    said = [fault.what.removeprefix(f"{file}: ") for fault in caught.value.faults]
+    assert [each.split(":")[0] for each in said] == [
+        "price.0.usd_per_million_in",
+        "price.1.usd_per_million_out",
+        "price.1",
+    ]
+    assert said[-1] == "price.1: m at Example.ORG has a price already, price.0"
+
+
+def test_models_of_other_hosts_may_have_the_same_name(tmp_path: Path) -> None:
+    file = tmp_path / "prices.toml"
+    file.write_text(TABLE + TABLE.replace("example.org", "example.com"))
+    assert len(read_prices(file)) == len(known_prices()) + 2
+
+
 @pytest.mark.parametrize("text", ["[[price", "price = 3", None])
 def test_what_is_no_table_is_refused(tmp_path: Path, text: str | None) -> None:
     file = tmp_path / "prices.toml"

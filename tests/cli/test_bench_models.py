@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from reasoned_explorer.calls import local
 from reasoned_explorer.cli.app import app
 from reasoned_explorer.evaluation.bench.store import RunStore
 
@@ -60,7 +61,7 @@ def test_models_run_in_mixed_time_and_what_they_take_is_told_before(server: Stub
         assert store.models["abilities"]["openai:fake"]["latency_s"] > 0.0
         rows = list(store.rows())
     assert len(rows) == 3
-    assert all(row.tokens_in > 0 and row.unpriced == 0 for row in rows)
+    assert all(row.tokens_in > 0 and row.unpriced == row.lost_calls == 0 for row in rows)
     assert {path.name for path in Path("run").iterdir()} <= {"run.sqlite", "traces"}
 
 
@@ -125,6 +126,31 @@ def test_methods_may_have_models_of_their_own(server: StubServer) -> None:
     assert "forecast: nearest-frontier" not in shown
 
 
+def test_one_model_behind_the_at_sign_may_be_added_to_a_run(server: StubServer) -> None:
+    first = ("--minds", "openai:fake", "--base-url", server.base_url, "--out", "run", "-q", *ALONE)
+    assert _rex("bench", *TINY, *first)[0] == 0
+    asked = len(server.received)
+    code, shown = _rex("bench", "--resume", "run", "--add", "llm-as-eval@openai:org/other", "-q", *ALONE)
+    assert code == 0, shown
+    # The method asks no visionary; who checks is as before.
+    assert {each.body["model"] for each in server.received[asked:]} == {"org/other", "fake"}
+    with RunStore.read(Path("run")) as store:
+        rows = [row for row in store.rows() if row.method == "llm-as-eval@openai:org/other"]
+    assert len(rows) == 3
+    assert all(row.tokens_in > 0 for row in rows)
+
+
+def test_what_only_describes_is_refused_as_a_mind_before_anything_is_loaded_or_made(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(local, "only_describes", lambda name: "kosmos" in name)
+    monkeypatch.setattr(local, "load_local", lambda name: pytest.fail(f"{name} was loaded"))
+    code, shown = _rex("bench", *TINY, *ALONE, "--minds", "hf:org/kosmos-2", "--out", "run")
+    assert code == 2, shown
+    assert "hf:org/kosmos-2 describes pictures only" in shown
+    assert not Path("run").exists()
+
+
 def test_table_iv_may_be_of_models(server: StubServer) -> None:
     code, shown = _rex(
         *("ablate", "minds", "--world", "park:5@300", "--per-cell", "1", *ALONE, "--out", "run", "-q"),
@@ -187,4 +213,5 @@ def test_a_server_that_goes_away_stops_a_run_which_goes_on_when_it_is_back() -> 
     assert len(rows) == 3
     calls = [call for record in records if record for step in record.steps for call in step.calls]
     # A mission that was about to end then may have lost its last few.
-    assert sum(call.fault is not None for call in calls) < 20
+    lost = sum(call.fault is not None and call.model == "openai:fake" for call in calls)
+    assert sum(row.lost_calls or 0 for row in rows) == lost < 20

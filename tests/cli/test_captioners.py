@@ -7,11 +7,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+import typer
 from PIL import Image
 from typer.testing import CliRunner
 
 from reasoned_explorer.calls import endpoint
-from reasoned_explorer.cli import consent
+from reasoned_explorer.cli import bench_models, consent
+from reasoned_explorer.cli.answers import answering
 from reasoned_explorer.cli.app import app
 from reasoned_explorer.evaluation.mission import Mission, MissionSettings
 from reasoned_explorer.evaluation.model_desk import ModelDesk
@@ -119,13 +121,13 @@ def test_pictures_of_a_real_place_stay_here_unless_a_person_agrees(
     # This machine's own server is near enough not to be asked about: pretend that it is far away.
     assert _run(server, world=real_place, out="near")[0] in {0, 1}
     monkeypatch.setattr(endpoint, "_is_loopback", lambda _: False)
-    before = len(_pictures(server))
+    before, asked = len(_pictures(server)), len(server.received)
     code, shown = _run(server, world=real_place)
     assert code == 2, shown
     assert "pictures of a square are to be sent to openai:fake at http://127.0.0.1" in shown
     assert "--yes" in shown
     assert not Path("run").exists()
-    assert len(_pictures(server)) == before
+    assert len(server.received) == asked, "not even what it can do is asked before"
     code, shown = _run(server, "--yes", world=real_place)
     assert code in {0, 1}, shown
     assert shown.count("are to be sent to") == shown.count("note: ")  # said once, on each of two outputs
@@ -134,21 +136,55 @@ def test_pictures_of_a_real_place_stay_here_unless_a_person_agrees(
     assert _run(server, out="generated")[0] in {0, 1}
 
 
-@pytest.mark.parametrize(("answer", "code"), [("y\n", None), ("n\n", 2), ("\n", 2)])
-def test_a_person_at_a_terminal_is_asked(answer: str, code: int | None, monkeypatch: pytest.MonkeyPatch) -> None:
-    import typer
+def test_a_benchmark_asks_before_any_call_too(server: StubServer, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(endpoint, "_is_loopback", lambda _: False)
+    monkeypatch.setattr(bench_models, "GENERATED", "")  # pretend that the park is real
+    code, shown = _rex(
+        *("bench", "--world", "park:5@300", "--per-cell", "1", "--levels", "1", "--planners", "nearest-frontier"),
+        *("--captioner", "openai:fake", "--base-url", server.base_url, "--workers", "1", "--out", "run", "-q"),
+    )
+    assert code == 2, shown
+    assert f"pictures of park:5@300 are to be sent to openai:fake at {server.base_url}" in shown
+    assert "--yes" in shown
+    assert not server.received
+    assert not Path("run").exists()
 
+
+@pytest.mark.parametrize(
+    ("answer", "code"), [("y\n", 0), ("n\n", 2), ("\n", 2), pytest.param("", 2, id="end of input")]
+)
+def test_a_person_at_a_terminal_is_asked(answer: str, code: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    ended, shown = _asked_for_consent(answer, monkeypatch)
+    assert "Send them?" in shown
+    assert ended == code, shown
+    assert ("--yes" in shown) == (code == 2)
+    assert "Aborted" not in shown
+
+
+def test_a_person_who_stops_at_the_question_has_stopped_and_not_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted_confirm(*_: object, **__: object) -> bool:
+        try:
+            raise KeyboardInterrupt
+        except KeyboardInterrupt:
+            raise typer.Abort from None  # as typer's own does
+
+    monkeypatch.setattr(typer, "confirm", interrupted_confirm)
+    ended, shown = _asked_for_consent("", monkeypatch)
+    assert ended == 130, shown
+
+
+def _asked_for_consent(answer: str, monkeypatch: pytest.MonkeyPatch) -> tuple[int, str]:
     asking = typer.Typer()
     # The runner's input is no terminal.
     monkeypatch.setattr(consent, "_is_answered", lambda: True)
 
     @asking.command()
+    @answering
     def ask() -> None:
         consent.agree_to_send("openai:far", ["munich"], yes=False)
 
     result = CliRunner().invoke(asking, [], input=answer)
-    assert "Send them?" in result.output + result.stderr
-    assert isinstance(result.exception, SettingsError) == (code == 2)
+    return result.exit_code, result.output
 
 
 def test_a_program_must_have_asked_too(server: StubServer, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -213,12 +213,30 @@ def test_a_key_is_written_nowhere(tmp_path: Path) -> None:
         assert not path.is_file() or KEY.encode() not in path.read_bytes(), path
 
 
+@pytest.mark.parametrize("usd", ["inf", "nan", "-1", "0"])
+def test_a_budget_that_is_none_is_told_once_with_what_is_expected(usd: str, server: StubServer) -> None:
+    code, shown = _run("--base-url", server.base_url, "--budget-usd", usd)
+    assert code == 2, shown
+    said = f"the budget is {float(usd)} US dollars; expected a finite number above 0; leave it out for no limit"
+    assert set(shown.splitlines()) == {f"rex: models: {said}"}
+    assert not server.received
+
+
+def test_an_address_without_v1_is_asked_about(server: StubServer) -> None:
+    root = server.base_url.removesuffix("/v1")
+    code, shown = _rex("minds", "check", "openai:fake", "--base-url", root)
+    assert code == 3, shown
+    assert f"did you mean {root}/v1?" in shown
+
+
 def test_what_a_model_can_do_is_told_with_what_a_mission_takes(server: StubServer) -> None:
     code, shown = _rex("minds", "check", "openai:fake", "--base-url", server.base_url)
     assert code == 0, shown
     for words in ("structured output    JSON schema", "log-probabilities", "median latency", "a mission of llm-rrt"):
         assert words in shown
-    assert _rex("minds", "check", "embedded")[0] == 2
+    code, shown = _rex("minds", "check", "embedded")
+    assert code == 2
+    assert "expected openai:MODEL or hf:NAME" in shown
 
 
 def test_what_cannot_be_is_told_at_once_and_leaves_nothing(

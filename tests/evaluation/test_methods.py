@@ -1,6 +1,15 @@
+from dataclasses import replace
+
 import pytest
 
-from reasoned_explorer.evaluation.methods import GROUPS, method, methods, models_called, sound_methods
+from reasoned_explorer.evaluation.methods import (
+    GROUPS,
+    method,
+    methods,
+    minds_called,
+    models_called,
+    sound_methods,
+)
 from reasoned_explorer.evaluation.mission import MissionSettings
 from reasoned_explorer.evaluation.mission_settings import errors_of
 from reasoned_explorer.model import InputError, SettingsError, UnknownNameError
@@ -40,7 +49,7 @@ def test_names_and_groups_stand_once() -> None:
 
 def test_all_names_that_are_wrong_are_told_at_once() -> None:
     with pytest.raises(InputError) as raised:
-        methods(["llm-rtt", "oracle:depth=1", "llm-rrt@embedded"])
+        methods(["llm-rtt", "oracle:depth=1", "llm-rrt@embedded/"])
     text = str(raised.value)
     assert "did you mean llm-rrt" in text
     assert "a bound as it is" in text
@@ -75,9 +84,26 @@ def test_methods_that_can_be_read_are_told_from_those_that_cannot() -> None:
         ("hf:org/small/embedded", "hf:org/small", "embedded"),
         ("embedded/hf:org/large", "embedded", "hf:org/large"),
         ("openai:org/one/openai:org/other", "openai:org/one", "openai:org/other"),
+        ("openai:gpt-4o", "openai:gpt-4o", "openai:gpt-4o"),
+        ("hf:org/small", "hf:org/small", "hf:org/small"),
     ],
 )
 def test_models_stand_behind_the_at_sign_whatever_slashes_they_have(roles: str, visionary: str, evaluator: str) -> None:
     settings = method(f"llm-rrt:depth=1@{roles}+perfect-halt").settings(BASE)
     assert (settings.visionary, settings.evaluator) == (visionary, evaluator)
-    assert models_called([f"llm-rrt@{roles}"], BASE) == tuple(name for name in (visionary, evaluator) if ":" in name)
+    called = models_called([f"llm-rrt@{roles}"], BASE)
+    assert called == tuple(dict.fromkeys(name for name in (visionary, evaluator) if ":" in name))
+    # The captioner is a model that is called, and no mind.
+    seeing = replace(BASE, captioner="openai:seeing")
+    assert models_called([f"llm-rrt@{roles}"], seeing) == (*called, "openai:seeing")
+    assert minds_called([f"llm-rrt@{roles}"], seeing) == called
+
+
+def test_one_name_behind_the_at_sign_is_visionary_and_evaluator_and_leaves_the_checker_alone() -> None:
+    settings = method("llm-as-eval@oracle").settings(replace(BASE, checker="embedded-words"))
+    assert (settings.visionary, settings.evaluator, settings.checker) == ("oracle", "oracle", "embedded-words")
+    (error,) = errors_of(method("llm-as-eval@embeded").settings(BASE))
+    assert "did you mean embedded" in str(error)
+    for roles in ("", "/", "embedded/", "/embedded"):
+        with pytest.raises(SettingsError, match="or one name for both"):
+            method(f"llm-rrt@{roles}")

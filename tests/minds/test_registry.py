@@ -29,6 +29,11 @@ def test_a_misspelt_name_answers_with_the_near_ones():
         make_minds(mind_context(), checker="skripted")
 
 
+def test_an_unknown_mind_answers_with_the_forms_of_models_too():
+    with pytest.raises(UnknownNameError, match="or openai:MODEL or hf:NAME"):
+        make_minds(mind_context(), "gpt-4o-mini")
+
+
 def test_unknowing_minds_are_the_embedded_ones_without_knowledge_of_places():
     from reasoned_explorer.minds.embedded import default_senses, unknowing_senses
     from reasoned_explorer.minds.embedded.relevance import relevance_of

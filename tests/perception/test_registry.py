@@ -28,6 +28,11 @@ def test_a_misspelt_name_gets_the_near_miss():
         CAPTIONERS.load("perfct")
 
 
+def test_an_unknown_captioner_answers_with_the_forms_of_models_too():
+    with pytest.raises(UnknownNameError, match="or openai:MODEL or hf:NAME"):
+        CAPTIONERS.load("kosmos-2")
+
+
 def test_listing_loads_no_simulator():
     program = (
         "import sys; from reasoned_explorer.perception.registry import CAPTIONERS; CAPTIONERS.names();"

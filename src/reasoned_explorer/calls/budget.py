@@ -19,7 +19,7 @@ def faults_of_budget(usd: object, minutes: object, unpriced: Iterable[str] = ())
         unpriced: Models that are to be asked and whose price is not known.
     """
     faults = [
-        Fault(f"the budget is {value!r:.60} {unit}", "a number above 0")
+        Fault(f"the budget is {value!r:.60} {unit}", "a finite number above 0", "leave it out for no limit")
         for value, unit in ((usd, "US dollars"), (minutes, "minutes"))
         if value is not None and not (is_within(value, 0.0) and value != 0)
     ]

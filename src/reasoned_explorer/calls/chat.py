@@ -119,6 +119,8 @@ class ChatModel(Protocol):
 ANY_OBJECT: Mapping[str, Any] = {"type": "object"}
 #: What the name of a model begins with; what follows is its name where it is served, or on a hub, or a folder.
 MODEL_PREFIXES = ("openai:", "hf:")
+#: The forms of such names, for people.
+MODEL_FORMS = "openai:MODEL or hf:NAME"
 
 
 def is_model_name(name: str) -> bool:

@@ -48,6 +48,11 @@ class Endpoint:
         """Whether it is OpenAI's own."""
         return self.host == OPENAI_HOST
 
+    @property
+    def usual_url(self) -> str | None:
+        """The address with the ``/v1`` that servers usually want, or None where it has one."""
+        return None if "/v1" in urlsplit(self.base_url).path else f"{self.base_url}/v1"
+
     def key(self) -> str | None:
         """Return the key, or None where none is set or sent."""
         return (os.environ.get(self.key_variable) or "").strip() or None if self.key_variable else None

@@ -3,9 +3,10 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from reasoned_explorer.calls.chat import is_model_name
 from reasoned_explorer.model.record import CallRecord
 
-__all__ = ["CallRecord", "Ledger", "RoleTotals"]
+__all__ = ["CallRecord", "Ledger", "RoleTotals", "lost_calls"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +34,11 @@ class RoleTotals:
     tokens_out: int = 0
     usd: float = 0.0
     unpriced: int = 0
+
+
+def lost_calls(calls: Iterable[CallRecord]) -> list[CallRecord]:
+    """Return those calls of real models that have no answer, in order."""
+    return [call for call in calls if call.fault is not None and is_model_name(call.model)]
 
 
 class Ledger:

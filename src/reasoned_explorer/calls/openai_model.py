@@ -239,6 +239,8 @@ class OpenAIModel:
         if status < 400:
             return _End(Sign.NEUTRAL, self._fault("redirected", f"status {status}", ""))
         fault, refused = self._fault("rejected", *detail), _refused(error)
+        if status == 404 and self.endpoint.usual_url is not None:
+            fault = f"{fault}; did you mean {self.endpoint.usual_url}?"
         return _End(Sign.NEUTRAL, fault, refused_parameter=refused, cannot_read=status in _CANNOT_READ)
 
     def _fault(self, kind: str, what: str, detail: str) -> str:

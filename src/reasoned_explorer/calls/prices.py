@@ -1,11 +1,13 @@
 """What a call costs, from a table with dates and sources. A price that is not known is unknown, never 0."""
 
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import date
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -47,8 +49,8 @@ class _Entry(BaseModel):
 
     host: str = Field(min_length=1)
     model: str = Field(min_length=1)
-    usd_per_million_in: float = Field(ge=0.0, allow_inf_nan=False)
-    usd_per_million_out: float = Field(ge=0.0, allow_inf_nan=False)
+    usd_per_million_in: float = Field(ge=0.0, allow_inf_nan=False, strict=True)
+    usd_per_million_out: float = Field(ge=0.0, allow_inf_nan=False, strict=True)
     as_of: date
     source: str = Field(min_length=1)
 
@@ -103,19 +105,40 @@ def read_prices(path: Path) -> PriceTable:
 def _read(text: str, name: str) -> PriceTable:
     expected = "[[price]] with host, model, usd_per_million_in, usd_per_million_out, as_of and source"
     try:
-        table = _Table.model_validate(tomllib.loads(text))
+        plain = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise SettingsError("prices", [Fault(f"{name}: {error}", expected)]) from error
+    faults, entries = [], list[_Entry]()
+    try:
+        entries = _Table.model_validate(plain).price
     except ValidationError as error:
         faults = [
             Fault(f"{name}: {'.'.join(map(str, each['loc']))}: {each['msg']}", expected) for each in error.errors()
         ]
-        raise SettingsError("prices", faults) from error
+    faults += _named_again(plain, name)
+    if faults:
+        raise SettingsError("prices", faults)
     return PriceTable(
         {
             (each.host.lower(), each.model): Price(
                 each.usd_per_million_in, each.usd_per_million_out, each.as_of, each.source
             )
-            for each in table.price
+            for each in entries
         }
     )
+
+
+def _named_again(plain: Mapping[str, Any], name: str) -> list[Fault]:
+    """Return a fault for each entry whose host and model an earlier one names, whatever else is wrong with them."""
+    listed = plain.get("price")
+    first: dict[tuple[str, str], int] = {}
+    faults = []
+    for place, each in enumerate(listed if isinstance(listed, list) else []):
+        host, model = (each.get("host"), each.get("model")) if isinstance(each, dict) else (None, None)
+        if not isinstance(host, str) or not isinstance(model, str):
+            continue
+        earlier = first.setdefault((host.lower(), model), place)
+        if earlier != place:
+            what = f"{name}: price.{place}: {model} at {host} has a price already, price.{earlier}"
+            faults.append(Fault(what, "one price for a model of a host"))
+    return faults

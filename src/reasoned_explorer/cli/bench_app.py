@@ -76,7 +76,8 @@ def bench(
     planners: Annotated[
         str,
         typer.Option(
-            help="Names with commas, e.g. llm-rrt:depth=1,follow-paths+perfect-halt; or a group: "
+            help="Names with commas, e.g. llm-rrt:depth=1,follow-paths+perfect-halt; with minds of their own: "
+            "llm-rrt@openai:a/openai:b (visionary/evaluator), llm-as-eval@openai:a (one for both); or a group: "
             "default, planners, bounds, controls, halts, all."
         ),
     ] = "default",
@@ -133,7 +134,9 @@ def bench(
     resume: Annotated[
         Path | None, typer.Option(metavar="RUN", help="Go on with a run that was stopped; it knows its own settings.")
     ] = None,
-    add: Annotated[str, typer.Option(help="With --resume: run these planners on its missions, too.")] = "",
+    add: Annotated[
+        str, typer.Option(help="With --resume: run these planners on its missions, too, e.g. llm-as-eval@openai:a.")
+    ] = "",
     traces: Annotated[bool, typer.Option("--traces/--no-traces", help="Keep the record of each mission.")] = True,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the tables.")] = False,
 ) -> None:

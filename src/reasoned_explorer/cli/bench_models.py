@@ -13,6 +13,7 @@ from reasoned_explorer.calls.prices import read_prices
 from reasoned_explorer.cli.models import ModelOptions
 from reasoned_explorer.evaluation.bench.plan import BenchPlan
 from reasoned_explorer.evaluation.bench.store import RunStore
+from reasoned_explorer.evaluation.methods import minds_called
 from reasoned_explorer.evaluation.model_access import PLAIN_ACCESS, ModelAccess
 from reasoned_explorer.evaluation.model_desk import KnownModel, ModelDesk
 from reasoned_explorer.model import RecordError
@@ -87,7 +88,8 @@ def models_ready(options: ModelOptions, plan: BenchPlan, kept: Mapping[str, Any]
         kept: What an earlier sitting kept of them (`RunStore.models`).
 
     Raises:
-        InputError: If a name, an address or a key is wrong, or a price that a budget needs is not known.
+        InputError: If a name, an address or a key is wrong, a mind can only describe, or a price that a budget needs is
+            not known.
         SettingsError: If pictures of real places would be sent away and a person does not agree.
         PartError: If a model does not answer.
         MissingDependencyError: If it needs what is not installed.
@@ -103,9 +105,10 @@ def models_ready(options: ModelOptions, plan: BenchPlan, kept: Mapping[str, Any]
         budget=budget,
         abilities={name: abilities_from_json(said) for name, said in kept.get("abilities", {}).items()},
     )
-    known = desk.prepare(plan.models)
+    desk.check_minds(minds_called(plan.methods, plan.base))
     real = [place.name for place in plan.split.places if place.city != GENERATED]
-    return ReadyModels(base_url, known, options.agree(desk, plan.base.captioner, real))
+    may_leave = options.agree(desk, plan.base.captioner, real)
+    return ReadyModels(base_url, desk.prepare(plan.models), may_leave)
 
 
 def tidy(folder: Path) -> None:

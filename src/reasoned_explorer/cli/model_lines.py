@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from reasoned_explorer.calls.abilities import Abilities
-from reasoned_explorer.calls.chat import is_model_name
+from reasoned_explorer.calls.chat import MODEL_FORMS, is_model_name
 from reasoned_explorer.calls.prices import Price
 from reasoned_explorer.cli.console import Output
 from reasoned_explorer.cli.models import ModelOptions
@@ -32,7 +32,7 @@ def check_model(name: str, options: ModelOptions) -> None:
         PartError: If it does not answer.
     """
     if not is_model_name(name):
-        raise SettingsError("model", [Fault(f"{name!r}", "openai:MODEL, e.g. openai:gpt-4o-mini")])
+        raise SettingsError("model", [Fault(f"{name!r}", f"{MODEL_FORMS}, e.g. openai:gpt-4o-mini")])
     (known,) = options.desk().prepare([name])
     console = Output()
     for lines in (lines_about, lines_of_costs):

@@ -16,8 +16,9 @@ from reasoned_explorer.cli.answers import complain
 from reasoned_explorer.cli.consent import agree_to_send
 from reasoned_explorer.evaluation.mission import Mission
 from reasoned_explorer.evaluation.mission_settings import MissionSettings, models_of
-from reasoned_explorer.evaluation.model_desk import ModelDesk, recording_faults
+from reasoned_explorer.evaluation.model_desk import ModelDesk
 from reasoned_explorer.model import Fault, Gathering, RecordError, SettingsError
+from reasoned_explorer.model.checks import is_there
 from reasoned_explorer.model.disk import disk_error
 
 #: Of the calls of a mission, in its folder.
@@ -48,7 +49,7 @@ class ModelOptions:
             called: The models that are to be called.
         """
         faults = [
-            *recording_faults(self.record, self.replay, self.resume),
+            *_recording_faults(self.record, self.replay, self.resume),
             *faults_of_budget(self.budget_usd, self.budget_minutes),
         ]
         if not called:
@@ -93,7 +94,7 @@ class ModelOptions:
         return self.resume or self.record or folder / TAPE_NAME
 
     def agree(self, desk: ModelDesk, captioner: str, places: Sequence[str]) -> bool:
-        """Return whether pictures may leave this machine; where they would, a person is asked once.
+        """Return whether pictures may leave this machine; where they would, a person is asked once, before any call.
 
         Args:
             desk: Knows where the captioner is.
@@ -101,15 +102,13 @@ class ModelOptions:
             places: The real places that pictures would be of.
 
         Raises:
-            SettingsError: If a person does not agree, or cannot be asked.
-            InputError, PartError: As `ModelDesk.prepare`.
+            SettingsError: If a person does not agree, or cannot be asked; or as `ModelDesk.other_machine`.
+            MissingDependencyError: As `ModelDesk.other_machine`.
         """
-        if not is_model_name(captioner) or not places or self.replay is not None:
+        who = desk.other_machine(captioner) if is_model_name(captioner) and places else None
+        if who is None:
             return False
-        (known,) = desk.prepare([captioner])
-        if known.model.is_local:
-            return False
-        agree_to_send(known.model.fingerprint.partition(" form ")[0], places, yes=self.yes)
+        agree_to_send(who, places, yes=self.yes)
         desk.pictures_may_leave = True
         return True
 
@@ -176,3 +175,20 @@ def made_for(tape: Path) -> Iterator[None]:
                 for each in made:
                     each.rmdir()
         raise
+
+
+def _recording_faults(record: Path | None, replay: Path | None, resume: Path | None = None) -> list[Fault]:
+    """Return what is wrong with the tapes that were asked for, as far as can be told without opening them."""
+    faults = []
+    given = {"--record": record, "--replay": replay, "--resume": resume}
+    named = [name for name, path in given.items() if path is not None]
+    if len(named) > 1:
+        faults.append(Fault(" beside ".join(named), "one of them"))
+    if record is not None and is_there(record):
+        faults.append(Fault(f"{record} is there already", "a name without a file", "give another name, or delete it"))
+    faults += [
+        Fault(f"there is no file {path}", "a tape that --record wrote")
+        for path in (replay, resume)
+        if path is not None and not path.is_file()
+    ]
+    return faults

@@ -20,7 +20,8 @@ _ROWS = (
     Entry("foresight-60m", "", "likewise, 60 m"),
     Entry("X+perfect-halt", "", "a bound: planner X with the judge in the checker's place"),
     Entry("X:depth=1", "", "planner X with settings of its own"),
-    Entry("X@A/B", "", "planner X with A as visionary and B as evaluator"),
+    Entry("X@A/B", "", "planner X with A as visionary and B as evaluator, e.g. llm-rrt@openai:small/openai:large"),
+    Entry("X@A", "", "planner X with A as both, e.g. llm-as-eval@openai:large, which needs no visionary"),
 )
 _MODEL_FORMS = (
     Entry("openai:MODEL", "", "a language model behind an OpenAI-compatible endpoint (--base-url)"),

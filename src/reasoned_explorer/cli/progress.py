@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from reasoned_explorer.calls.chat import is_model_name
+from reasoned_explorer.calls.ledger import lost_calls
 from reasoned_explorer.geometry import GeoOrigin
 from reasoned_explorer.model import LegOutcome
 from reasoned_explorer.model.record import EpisodeRecord, MissionHeader, MissionSummary, StepRecord, ViewRecord
@@ -138,7 +139,7 @@ def _model_lines(record: EpisodeRecord) -> Iterator[str]:
     sent, got = sum(call.tokens_in for call in calls), sum(call.tokens_out for call in calls)
     least = "at least " if any(call.usd is None for call in calls) else ""
     usd = math.fsum(call.usd or 0.0 for call in calls)
-    faults = Counter(call.fault.partition(":")[0] for call in calls if call.fault is not None)
+    faults = Counter((call.fault or "").partition(":")[0] for call in lost_calls(calls))
     lost = ", ".join(f"{count} {kind}" for kind, count in faults.most_common())
     yield f"  models   {len(calls)} calls, {sent:,} tokens sent and {got:,} got, {least}${usd:.4f}"
     if lost:

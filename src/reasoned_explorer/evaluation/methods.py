@@ -1,9 +1,9 @@
 """The rows of a table: which planner, whose minds in which role, and what is changed for a bound or a control.
 
 A method is written as a planner's name, with settings of the planner behind a colon, minds of its own for visionary and
-evaluator behind an ``@``, and ``+perfect-halt`` at the end where the judge is to do the halting: ``llm-rrt``,
-``llm-rrt:depth=1``, ``llm-rrt@embedded/oracle``, ``llm-rrt@openai:gpt-4o-mini/openai:gpt-4o``,
-``follow-paths+perfect-halt``. Bounds have names of their own.
+evaluator behind an ``@`` (one name for both, or two), and ``+perfect-halt`` at the end where the judge is to do the
+halting: ``llm-rrt``, ``llm-rrt:depth=1``, ``llm-rrt@embedded/oracle``, ``llm-as-eval@openai:gpt-4o``,
+``llm-rrt@openai:gpt-4o-mini/openai:gpt-4o``, ``follow-paths+perfect-halt``. Bounds have names of their own.
 Whatever planner is registered, by this package or another, is a method.
 """
 
@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from reasoned_explorer.calls.chat import is_model_name
-from reasoned_explorer.evaluation.mission_settings import MissionSettings, models_of
+from reasoned_explorer.evaluation.mission_settings import MissionSettings, minds_of, models_of
 from reasoned_explorer.minds.registry import MINDS, READ_THE_TRUTH
 from reasoned_explorer.model import Fault, InputError, SettingsError, UnknownNameError
 from reasoned_explorer.planning.registry import PLANNERS
@@ -99,7 +99,7 @@ def method(name: str) -> Method:
     stem, at, roles = stem.partition("@")
     visionary, evaluator = _roles(roles)
     if at and not (visionary and evaluator):
-        raise SettingsError(f"planner {name!r}", [Fault(f"minds {roles!r}", "visionary/evaluator behind the @")])
+        raise SettingsError(f"planner {name!r}", [Fault(f"minds {roles!r}", _ROLES_EXPECTED)])
     planner, colon, listed = stem.partition(":")
     settings = parse_planner_settings([pair for pair in listed.split(",") if pair]) if colon else {}
     if planner in BOUND_METHODS:
@@ -114,11 +114,19 @@ def method(name: str) -> Method:
     return Method(name, planner, settings, visionary or None, evaluator or None, halts, is_bound=is_bound)
 
 
+_ROLES_EXPECTED = "visionary/evaluator behind the @, or one name for both"
+
+
 def _roles(text: str) -> tuple[str, str]:
-    """Return visionary and evaluator of ``visionary/evaluator``; models' own names may hold slashes, too."""
+    """Return visionary and evaluator of ``visionary/evaluator``, or of one name for both.
+
+    Models' own names may hold slashes, too: what can be read as two names is two.
+    """
     pairs = [(text[:at], text[at + 1 :]) for at, sign in enumerate(text) if sign == "/"]
     known = [pair for pair in pairs if all(is_model_name(name) or name in MINDS.names() for name in pair)]
-    return known[0] if known else (pairs[0] if pairs else ("", ""))
+    if not known and (is_model_name(text) or not pairs):
+        return text, text
+    return known[0] if known else pairs[0]
 
 
 def methods(names: Sequence[str]) -> tuple[Method, ...]:
@@ -142,6 +150,12 @@ def models_called(names: Sequence[str], base: MissionSettings) -> tuple[str, ...
     """
     called = (models_of(method(name).settings(base)) for name in names)
     return tuple(dict.fromkeys(model for models in called for model in models))
+
+
+def minds_called(names: Sequence[str], base: MissionSettings) -> tuple[str, ...]:
+    """Return those of `models_called` that are minds, whether they are captioners, too, or not."""
+    minds = (mind for name in names for mind in minds_of(method(name).settings(base)).values())
+    return tuple(dict.fromkeys(mind for mind in minds if is_model_name(mind)))
 
 
 def sound_methods(names: Sequence[str]) -> tuple[Method, ...]:

@@ -242,14 +242,18 @@ class Mission:
         latency = latency_profile(settings.latency)
         callers: list[Caller] = []
 
-        def caller_of(name: str) -> tuple[ModelDesk, Caller]:
+        def desk_for_all() -> ModelDesk:
             self._desk = self._desk or ModelDesk()
-            callers.append(self._desk.caller(name, self.clock, ledger))
-            return self._desk, callers[-1]
+            return self._desk
+
+        def caller_of(name: str) -> tuple[ModelDesk, Caller]:
+            desk = desk_for_all()
+            callers.append(desk.caller(name, self.clock, ledger))
+            return desk, callers[-1]
 
         def model_minds(name: str) -> Minds:
+            desk_for_all().check_minds([name])
             desk, caller = caller_of(name)
-            desk.check_mind(name)
             return prompted_minds(caller, name=name, abilities=desk.abilities(name), seed=settings.seed)
 
         def model_captioner(name: str) -> Captioner:

@@ -15,7 +15,7 @@ from reasoned_explorer.calls.caller import Caller
 from reasoned_explorer.calls.chat import ChatAnswer, ChatModel, ChatRequest, is_model_name
 from reasoned_explorer.calls.endpoint import AskingSettings
 from reasoned_explorer.calls.ledger import Ledger
-from reasoned_explorer.calls.openai_model import openai_model
+from reasoned_explorer.calls.openai_model import OpenAIModel, openai_model
 from reasoned_explorer.calls.prices import OWN_MACHINE, Price, PriceTable
 from reasoned_explorer.calls.tape import TapePlayer, TapeRecorder
 from reasoned_explorer.clock import Clock, run_live
@@ -36,12 +36,10 @@ class KnownModel:
     Attributes:
         model: Answers.
         abilities: What it was found to be able to.
-        priced: Whether it is known what it costs.
     """
 
     model: ChatModel
     abilities: Abilities
-    priced: bool
 
     @property
     def price(self) -> Price | None:
@@ -113,33 +111,56 @@ class ModelDesk:
             PartError: If a model does not answer at all.
         """
         wanted = list(dict.fromkeys(name for name in names if is_model_name(name)))
+        self._check_priced([name for name in wanted if name not in self._known])
         for name in wanted:
             if name not in self._known:
                 self._known[name] = self._look_into(name) if self._player is None else _taped(name, self._player)
-        known = tuple(self._known[name] for name in wanted)
-        if self._budget is not None and self._budget.usd is not None:
-            unpriced = [each.model.name for each in known if not each.priced]
-            if faults := faults_of_budget(self._budget.usd, self._budget.minutes, unpriced):
-                raise SettingsError("budget", faults)
-        return known
+        return tuple(self._known[name] for name in wanted)
 
-    def _look_into(self, name: str) -> KnownModel:
-        if name.startswith(LOCAL_PREFIX):
-            from reasoned_explorer.calls.local import load_local
+    def _check_priced(self, names: Iterable[str]) -> None:
+        """Check that the prices that a budget needs are known, before any call may cost something."""
+        if self._player is not None or self._budget is None or self._budget.usd is None:
+            return
+        asked = [name for name in names if not name.startswith(LOCAL_PREFIX)]
+        unpriced = [name for name in asked if self._behind_an_endpoint(name).price is None]
+        if faults := faults_of_budget(self._budget.usd, self._budget.minutes, unpriced):
+            raise SettingsError("budget", faults)
 
-            local = load_local(name)
-            return KnownModel(local, self._abilities.get(name) or _found_out(local, together=2), priced=True)
-        model = openai_model(
+    def other_machine(self, name: str) -> str | None:
+        """Return who on another machine is sent what a model is asked, or None where it stays here. Nobody is asked.
+
+        Args:
+            name: Of the model, which need not be ready.
+
+        Raises:
+            SettingsError: If the name, the address or a key is wrong.
+            MissingDependencyError: If an endpoint needs what is not installed.
+        """
+        if self._player is not None or name.startswith(LOCAL_PREFIX):
+            return None
+        model = self._behind_an_endpoint(name)
+        return None if model.is_local else f"{model.name} at {model.endpoint.base_url}"
+
+    def _behind_an_endpoint(self, name: str) -> OpenAIModel:
+        return openai_model(
             name,
             base_url=self._base_url,
             key_variable=self._key_variable,
             settings=self._asking,
             prices=self._prices,
         )
+
+    def _look_into(self, name: str) -> KnownModel:
+        if name.startswith(LOCAL_PREFIX):
+            from reasoned_explorer.calls.local import load_local
+
+            local = load_local(name)
+            return KnownModel(local, self._abilities.get(name) or _found_out(local, together=2))
+        model = self._behind_an_endpoint(name)
         abilities = self._abilities.get(name) or _found_out(model)
         at_once = _most_at_once(abilities) if model.is_local else None
         asked = model.asking(abilities.structure, most_at_once=at_once)
-        return KnownModel(asked, abilities, model.price is not None)
+        return KnownModel(asked, abilities)
 
     def caller(self, name: str, clock: Clock, ledger: Ledger) -> Caller:
         """Return who asks a model for a mission.
@@ -161,15 +182,30 @@ class ModelDesk:
         self._callers.add(caller)
         return caller
 
-    def check_mind(self, name: str) -> None:
-        """Check that a model, which is ready, can be a mind.
+    def check_minds(self, names: Iterable[str]) -> None:
+        """Check that models can be minds, before any weights are read and anybody is asked.
 
         Raises:
-            SettingsError: If it describes pictures and does nothing else.
+            SettingsError: With all that describe pictures and do nothing else, or if one on this machine is none.
+            MissingDependencyError: If one needs what is not installed.
         """
-        if getattr(self._known[name].model, "only_describes", False):
-            fault = Fault(f"{name} describes pictures only", "a model that answers questions", "it may be a captioner")
-            raise SettingsError("minds", [fault])
+        expected, remedy = "a model that answers questions", "it may be a captioner"
+        faults = [
+            Fault(f"{name} describes pictures only", expected, remedy)
+            for name in dict.fromkeys(names)
+            if self._only_describes(name)
+        ]
+        if faults:
+            raise SettingsError("minds", faults)
+
+    def _only_describes(self, name: str) -> bool:
+        if name in self._known:
+            return getattr(self._known[name].model, "only_describes", False)
+        if self._player is not None or not name.startswith(LOCAL_PREFIX):
+            return False
+        from reasoned_explorer.calls.local import only_describes
+
+        return only_describes(name)
 
     def captioner(self, name: str, caller: Caller, *, seed: int, place: str | None) -> PromptedCaptioner:
         """Return the captioner that shows pictures to a model.
@@ -334,32 +370,9 @@ def _most_at_once(abilities: Abilities) -> int | None:
 def _taped(name: str, player: TapePlayer) -> KnownModel:
     about = player.about.get("models", {}).get(name)
     try:
-        return KnownModel(
-            _Taped(name, about["fingerprint"], about.get("family", "")),
-            abilities_from_json(about["abilities"]),
-            priced=True,
-        )
+        model = _Taped(name, about["fingerprint"], about.get("family", ""))
+        return KnownModel(model, abilities_from_json(about["abilities"]))
     except (TypeError, KeyError) as error:
         held = ", ".join(player.about.get("models", {})) or "none"
         fault = Fault(f"no calls of {name} on the tape", f"one of those on it: {held}")
         raise RecordError("replay", [fault]) from error
-
-
-def recording_faults(record: Path | None, replay: Path | None, resume: Path | None = None) -> list[Fault]:
-    """Return what is wrong with the tapes that were asked for, as far as can be told without opening them."""
-    faults = []
-    given = {"--record": record, "--replay": replay, "--resume": resume}
-    named = [name for name, path in given.items() if path is not None]
-    if len(named) > 1:
-        faults.append(Fault(" beside ".join(named), "one of them"))
-    if record is not None and is_there(record):
-        faults.append(Fault(f"{record} is there already", "a name without a file", "give another name, or delete it"))
-    faults += [
-        Fault(f"there is no file {path}", "a tape that --record wrote")
-        for path in (replay, resume)
-        if path is not None and not path.is_file()
-    ]
-    return faults
-
-
-__all__ = ["KnownModel", "ModelDesk", "recording_faults"]

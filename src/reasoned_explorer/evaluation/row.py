@@ -47,6 +47,7 @@ class MissionRow:
         large_collisions: With walls, vehicles and other large things.
         score: Its metrics.
         unpriced: How many calls there were whose cost is not known: no price, or no answer.
+        lost_calls: How many calls of real models have no answer; None where an older version wrote the row.
     """
 
     method: str
@@ -78,6 +79,7 @@ class MissionRow:
     large_collisions: int
     score: MissionScore
     unpriced: int = 0
+    lost_calls: int | None = None
 
     @property
     def level(self) -> int:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from reasoned_explorer.calls.chat import is_model_name
+from reasoned_explorer.calls.chat import MODEL_FORMS, is_model_name
 from reasoned_explorer.minds.context import MindContext, Minds
 from reasoned_explorer.model import Fault, SettingsError
 from reasoned_explorer.registry import Entry, Registry
@@ -46,6 +46,7 @@ MINDS = Registry(
             "a checker that the judge agrees with, in an ordinary checker's time: a bound, no method",
         ),
     ),
+    beside=MODEL_FORMS,
 )
 
 #: Minds that fill some roles only; asked in another they answer with a fault. All others fill all.

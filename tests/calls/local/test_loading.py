@@ -1,6 +1,8 @@
 """From a name to a model, or to why there is none."""
 
+import io
 import json
+import logging
 import os
 import shutil
 import subprocess
@@ -10,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from reasoned_explorer.calls.local import LocalModel, LocalSettings, hub_name, load_local
+from reasoned_explorer.calls.local import LocalModel, LocalSettings, hub_name, load_local, loading, only_describes
 from reasoned_explorer.model import MissingDependencyError, SettingsError
 from tests.calls.local import tiny
 
@@ -96,6 +98,35 @@ def test_the_fingerprint_tells_other_weights_and_other_precision(tmp_path: Path,
     shutil.move(copied, tmp_path / "changed")
     changed = load_local(f"hf:{tmp_path / 'changed'}")
     assert changed.fingerprint.removeprefix(f"{changed.name} ") != one
+
+
+def test_what_only_describes_is_told_by_the_configuration_without_weights(tmp_path: Path, local: Local) -> None:
+    folder = tiny.make_kosmos_2(tmp_path / "kosmos-2")
+    (folder / "model.safetensors").unlink()
+    assert only_describes(f"hf:{folder}")
+    assert not only_describes(f"hf:{tiny.make_text_model(tmp_path / 'llama')}")
+    with pytest.raises(SettingsError, match="cannot be loaded"):
+        only_describes(f"hf:{tmp_path}")
+
+
+def test_the_hubs_library_is_silent_about_each_try_and_then_as_loud_as_before() -> None:
+    hub = pytest.importorskip("huggingface_hub")
+    before = hub.logging.get_verbosity()
+    told = hub.logging.get_logger("huggingface_hub.utils._http")
+    shown = io.StringIO()
+    handler = logging.StreamHandler(shown)
+    told.addHandler(handler)
+    try:
+        with loading._one_error("hf:org/tiny"):
+            told.warning("Retrying in 1s [Retry 1/5].")
+        with pytest.raises(SettingsError, match="cannot be loaded: OSError: nobody there"), loading._one_error("hf:x"):
+            raise OSError("nobody there")
+        assert shown.getvalue() == ""
+        assert hub.logging.get_verbosity() == before
+        told.warning("as before")
+        assert shown.getvalue() == "as before\n"
+    finally:
+        told.removeHandler(handler)
 
 
 def test_a_model_is_loaded_once(local: Local) -> None:

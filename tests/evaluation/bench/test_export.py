@@ -1,5 +1,7 @@
 import csv
+import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -27,6 +29,24 @@ def test_csv_holds_every_mission(store: RunStore, tmp_path: Path) -> None:
         assert float(line["spl"]) == row.score.spl
         assert float(line["computing_s"]) == row.score.computing_s
     assert "wall_s" not in rows[0]
+
+
+def test_lost_calls_are_exported_and_not_known_of_rows_of_older_versions(
+    tmp_path: Path, store: RunStore, small_plan: BenchPlan
+) -> None:
+    tasks, rows = list(small_plan.tasks()), list(store.rows())
+    old = json.loads(rows[0].as_json())
+    del old["lost_calls"]
+    with RunStore.create(tmp_path / "run", small_plan, {}) as mixed:
+        mixed.add(tasks[0], json.dumps(old), trace=None, wall_s=0.0)
+        mixed.add(tasks[1], replace(rows[1], lost_calls=7).as_json(), trace=None, wall_s=0.0)
+        assert [row.lost_calls for row in mixed.rows()] == [None, 7]
+        assert export(mixed, tmp_path / "results.csv") == 2
+    with (tmp_path / "results.csv").open(newline="", encoding="utf-8") as file:
+        head, *lines = csv.reader(file)
+    column = head.index("lost_calls")
+    assert head[column - 1] == "unpriced"
+    assert [line[column] for line in lines] == ["", "7"]
 
 
 def test_parquet_holds_the_same(store: RunStore, tmp_path: Path) -> None:

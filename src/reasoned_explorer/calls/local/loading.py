@@ -5,16 +5,20 @@ holds all of a model, the hub is not asked at all; with ``HF_HUB_OFFLINE=1`` it 
 """
 
 import hashlib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from reasoned_explorer.calls.local.coding import Coder, ConversationCoder, GroundingCoder
 from reasoned_explorer.calls.local.generating import Generator
 from reasoned_explorer.calls.local.model import LocalModel
 from reasoned_explorer.model import Fault, MissingDependencyError, SettingsError
+
+T = TypeVar("T")
 
 PREFIX = "hf:"
 _INSTALL = "pip install 'reasoned-explorer[local]'"
@@ -80,14 +84,42 @@ def load_local(name: str, settings: LocalSettings | None = None) -> LocalModel:
         MissingDependencyError: If torch or transformers is not installed.
         SettingsError: If there is no such model, or it cannot be run here.
     """
+    where = _checked(name)
+    with _one_error(name):
+        return _load(name, where, settings or LocalSettings())  # kept: the second time it is there
+
+
+def only_describes(name: str) -> bool:
+    """Return whether a model describes pictures and does nothing else, by its configuration: no weights are read.
+
+    Args:
+        name: As for `load_local`.
+
+    Raises:
+        MissingDependencyError, SettingsError: As `load_local`.
+    """
+    where = _checked(name)
+    with _one_error(name):
+        return _wherever(where, lambda source: _is_grounding(_config(source)))
+
+
+def _checked(name: str) -> str:
+    """Return what stands behind ``hf:``, once what has to be installed is there."""
     where = hub_name(name)
     if where is None:
         raise SettingsError("model", [Fault(f"{name!r}", "hf: and a name on the Hugging Face hub or a folder")])
     for package in ("torch", "transformers"):
         if find_spec(package) is None:
             raise MissingDependencyError(name, package, _INSTALL)
+    return where
+
+
+@contextmanager
+def _one_error(name: str) -> Iterator[None]:
+    """Make one error of whatever goes wrong with a model's files."""
     try:
-        return _load(name, where, settings or LocalSettings())  # kept: the second time it is there
+        with _quiet_hub():
+            yield
     except (OSError, ValueError, ImportError, RuntimeError, KeyError) as error:
         reason = " ".join(str(error).split())
         fault = Fault(
@@ -96,6 +128,19 @@ def load_local(name: str, settings: LocalSettings | None = None) -> LocalModel:
             "check the name, and that its files are here or the hub can be reached",
         )
         raise SettingsError("model", [fault]) from error
+
+
+@contextmanager
+def _quiet_hub() -> Iterator[None]:
+    """Keep the hub's library from telling of each try to reach the hub: if all are in vain, the error says so."""
+    from huggingface_hub import logging
+
+    level = logging.get_verbosity()
+    logging.set_verbosity(max(level, logging.ERROR))
+    try:
+        yield
+    finally:
+        logging.set_verbosity(level)
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,22 +156,37 @@ class _Source:
         return kind.from_pretrained(self.where, revision=self.revision, local_files_only=self.is_here, **options)
 
 
-@cache
-def _load(name: str, where: str, settings: LocalSettings) -> LocalModel:
+def _wherever(where: str, read: Callable[[_Source], T]) -> T:
+    """Return what is read from a folder, or from the hub's cache, or from the hub where the cache lacks something."""
     if Path(where).is_dir():
-        return _loaded(name, _Source(where, "main", is_here=True), settings)
+        return read(_Source(where, "main", is_here=True))
     hub, _, revision = where.partition("@")
     try:
-        return _loaded(name, _Source(hub, revision or "main", is_here=True), settings)
+        return read(_Source(hub, revision or "main", is_here=True))
     except OSError:
-        return _loaded(name, _Source(hub, revision or "main", is_here=False), settings)
+        return read(_Source(hub, revision or "main", is_here=False))
+
+
+@cache
+def _load(name: str, where: str, settings: LocalSettings) -> LocalModel:
+    return _wherever(where, lambda source: _loaded(name, source, settings))
+
+
+def _config(source: _Source) -> Any:
+    from transformers import AutoConfig
+
+    return source.read(AutoConfig)
+
+
+def _is_grounding(config: Any) -> bool:
+    """Return whether a model is one of the kind that describes pictures and does nothing else."""
+    return str(config.model_type) == _GROUNDING
 
 
 def _loaded(name: str, source: _Source, settings: LocalSettings) -> LocalModel:
     import torch
     from transformers import (
         MODEL_FOR_IMAGE_TEXT_TO_TEXT_MAPPING,
-        AutoConfig,
         AutoModelForCausalLM,
         AutoModelForImageTextToText,
         AutoTokenizer,
@@ -134,7 +194,7 @@ def _loaded(name: str, source: _Source, settings: LocalSettings) -> LocalModel:
 
     device = torch.device(settings.device or _best_device())
     dtype = getattr(torch, settings.dtype or _best_dtype(device.type))
-    config = source.read(AutoConfig)
+    config = _config(source)
     if getattr(config, "is_encoder_decoder", False):
         raise ValueError(f"{config.model_type} is a model that translates one text into another; it cannot be asked")
     family, sees = str(config.model_type), type(config) in MODEL_FOR_IMAGE_TEXT_TO_TEXT_MAPPING
@@ -143,7 +203,9 @@ def _loaded(name: str, source: _Source, settings: LocalSettings) -> LocalModel:
         coder = ConversationCoder(source.read(AutoTokenizer))
     else:
         processor = _processor(source, config)
-        coder = GroundingCoder(processor) if family == _GROUNDING else ConversationCoder(processor.tokenizer, processor)
+        coder = (
+            GroundingCoder(processor) if _is_grounding(config) else ConversationCoder(processor.tokenizer, processor)
+        )
     kind = AutoModelForImageTextToText if sees else AutoModelForCausalLM
     model = source.read(kind, config=config, dtype=dtype, use_safetensors=True).to(device).eval()
     version = _version(source)[:12]

@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import Any
 
+from reasoned_explorer.calls.ledger import lost_calls
 from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
 from reasoned_explorer.evaluation.mission import Mission, MissionResult, judge_of
 from reasoned_explorer.evaluation.mission_settings import models_of
@@ -175,6 +176,7 @@ def failed_row(plan: BenchPlan, task: Task, reason: str) -> MissionRow:
         tokens_in=0,
         tokens_out=0,
         usd=0.0,
+        lost_calls=0,
         evaluator_sum=0.0,
         evaluator_count=0,
         small_collisions=0,
@@ -214,6 +216,7 @@ def _row_of(plan: BenchPlan, task: Task, item: SplitEpisode, result: MissionResu
         tokens_out=sum(call.tokens_out for call in calls),
         usd=round(math.fsum(call.usd or 0.0 for call in calls), 9),
         unpriced=sum(call.usd is None for call in calls),
+        lost_calls=len(lost_calls(calls)),
         evaluator_sum=round(math.fsum(scores), 4),
         evaluator_count=len(scores),
         small_collisions=small,
