@@ -354,7 +354,7 @@ def test_another_prompt_setting_or_model_is_another_question(tmp_path: Path) -> 
 
 
 def test_faults_are_never_cached_and_samples_only_if_wanted(tmp_path: Path) -> None:
-    cache, samples = AnswerCache(tmp_path / "cache"), AnswerCache(tmp_path / "samples", sampled=True)
+    cache, samples = AnswerCache(tmp_path / "cache", sampled=False), AnswerCache(tmp_path / "samples")
     run(FakeModel(lambda _: ChatAnswer(fault="500")), ask(question()), cache=cache)
     drawn = question(temperature=0.7)
     run(FakeModel(), ask(drawn), cache=cache)

@@ -92,3 +92,19 @@ def test_what_is_no_table_is_refused(tmp_path: Path, text: str | None) -> None:
         file.write_text(text)
     with pytest.raises(SettingsError):
         read_prices(file)
+
+
+@pytest.mark.parametrize("host", ["https://example.org", "example.org:8000", "example.org/v1", "127.0.0.1:8000", ""])
+def test_a_host_is_named_without_scheme_port_and_path(tmp_path: Path, host: str) -> None:
+    file = tmp_path / "prices.toml"
+    file.write_text(TABLE.replace("example.org", host))
+    with pytest.raises(SettingsError, match="without scheme and port"):
+        read_prices(file)
+
+
+def test_a_host_may_be_an_address(tmp_path: Path) -> None:
+    file = tmp_path / "prices.toml"
+    file.write_text(TABLE.replace("example.org", "::1") + TABLE.replace("example.org", "10.0.0.7"))
+    prices = read_prices(file)
+    assert prices.price_of("m", Endpoint("http://10.0.0.7:8000/v1")) is not None
+    assert prices.price_of("m", Endpoint("http://[::1]:8000/v1")) is not None

@@ -46,8 +46,8 @@ class AnswerCache:
 
     Args:
         path: Of the file; made where it is not there.
-        sampled: Whether answers of sampling (temperature above 0) are kept as well: a repeated run then repeats them
-            instead of drawing anew.
+        sampled: Whether answers of sampling (temperature above 0) are used again, too, so that a repeated run costs
+            nothing. Without, they are drawn anew.
 
     Attributes:
         path: Of the file.
@@ -57,7 +57,7 @@ class AnswerCache:
         SettingsError: If the file cannot be made or is something else.
     """
 
-    def __init__(self, path: Path | str, *, sampled: bool = False) -> None:
+    def __init__(self, path: Path | str, *, sampled: bool = True) -> None:
         self.sampled = sampled
         self.trouble: str | None = None
         self._lock = threading.Lock()

@@ -44,10 +44,14 @@ class Price:
 OWN_MACHINE = Price(0.0, 0.0, None, "runs on this machine")
 
 
+#: A name or an address, without scheme, port or path.
+_HOST = r"^([^/:\s]+|[0-9A-Fa-f:]*:[0-9A-Fa-f:]*:[0-9A-Fa-f:.]*)$"
+
+
 class _Entry(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    host: str = Field(min_length=1)
+    host: str = Field(min_length=1, pattern=_HOST)
     model: str = Field(min_length=1)
     usd_per_million_in: float = Field(ge=0.0, allow_inf_nan=False, strict=True)
     usd_per_million_out: float = Field(ge=0.0, allow_inf_nan=False, strict=True)
@@ -103,7 +107,7 @@ def read_prices(path: Path) -> PriceTable:
 
 
 def _read(text: str, name: str) -> PriceTable:
-    expected = "[[price]] with host, model, usd_per_million_in, usd_per_million_out, as_of and source"
+    expected = "[[price]] with host (without scheme and port), model, usd_per_million_in, usd_per_million_out, as_of and source"
     try:
         plain = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:

@@ -10,7 +10,7 @@ from reasoned_explorer.cli.answers import answering
 from reasoned_explorer.cli.bench_app import add_commands
 from reasoned_explorer.cli.look_app import add_look
 from reasoned_explorer.cli.minds_app import minds_app
-from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices, Yes
+from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices, SampleAnew, Yes
 from reasoned_explorer.cli.worlds_app import worlds_app
 
 app = typer.Typer(
@@ -93,6 +93,7 @@ def run(
     ] = None,
     replay: Annotated[Path | None, typer.Option(help="Take every answer from such a file; nobody is called.")] = None,
     cache: Annotated[Path | None, typer.Option(help="File of answers that may be used again; made if need be.")] = None,
+    sample_anew: SampleAnew = False,
     budget_usd: Annotated[float | None, typer.Option(help="End before calls cost more, US dollars.")] = None,
     budget_minutes: Annotated[float | None, typer.Option(help="End it after so many real minutes.")] = None,
     views: Annotated[int, typer.Option(help="Headings per look (N).")] = 3,
@@ -157,6 +158,7 @@ def run(
                 replay=replay,
                 resume=resume,
                 cache=cache,
+                sample_anew=sample_anew,
                 budget_usd=budget_usd,
                 budget_minutes=budget_minutes,
                 yes=yes,

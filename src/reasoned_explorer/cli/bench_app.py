@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from reasoned_explorer.cli.answers import answering
-from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices, Yes
+from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices, SampleAnew, Yes
 from reasoned_explorer.model import Fault, SettingsError
 
 ablate_app = typer.Typer(
@@ -27,7 +27,18 @@ Run = Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a run of
 
 
 _BESIDE_RESUME = (
-    *("add", "workers", "ray", "base_url", "key_variable", "prices", "cache", "budget_usd", "budget_minutes"),
+    *(
+        "add",
+        "workers",
+        "ray",
+        "base_url",
+        "key_variable",
+        "prices",
+        "cache",
+        "sample_anew",
+        "budget_usd",
+        "budget_minutes",
+    ),
     *("yes", "quiet", "resume"),
 )
 _BESIDE_RESUME_SAID = ", ".join(f"--{name.replace('_', '-')}" for name in _BESIDE_RESUME[:-1]) + " only"
@@ -120,6 +131,7 @@ def bench(
     key_variable: KeyVariable = None,
     prices: Prices = None,
     cache: _Cache = None,
+    sample_anew: SampleAnew = False,
     budget_usd: _BudgetUsd = None,
     budget_minutes: _BudgetMinutes = None,
     t_max: Annotated[float, typer.Option(help="Mission time above which it is failed, minutes.")] = 30.0,
@@ -185,6 +197,7 @@ def bench(
                 key_variable=key_variable,
                 prices=prices,
                 cache=cache,
+                sample_anew=sample_anew,
                 budget_usd=budget_usd,
                 budget_minutes=budget_minutes,
                 yes=yes,
@@ -269,6 +282,7 @@ def ablate_depth_(
     key_variable: KeyVariable = None,
     prices: Prices = None,
     cache: _Cache = None,
+    sample_anew: SampleAnew = False,
     budget_usd: _BudgetUsd = None,
     budget_minutes: _BudgetMinutes = None,
     workers: _Workers = None,
@@ -309,6 +323,7 @@ def ablate_depth_(
             key_variable=key_variable,
             prices=prices,
             cache=cache,
+            sample_anew=sample_anew,
             budget_usd=budget_usd,
             budget_minutes=budget_minutes,
         ),
@@ -336,6 +351,7 @@ def ablate_minds_(
     key_variable: KeyVariable = None,
     prices: Prices = None,
     cache: _Cache = None,
+    sample_anew: SampleAnew = False,
     budget_usd: _BudgetUsd = None,
     budget_minutes: _BudgetMinutes = None,
     workers: _Workers = None,
@@ -376,6 +392,7 @@ def ablate_minds_(
             key_variable=key_variable,
             prices=prices,
             cache=cache,
+            sample_anew=sample_anew,
             budget_usd=budget_usd,
             budget_minutes=budget_minutes,
         ),

@@ -69,6 +69,7 @@ class ReadyModels:
             key_variable=options.key_variable,
             prices=options.prices,
             cache=options.cache,
+            sample_anew=options.sample_anew,
             budget_usd=options.budget_usd,
             budget_minutes=options.budget_minutes,
             since_s=time.monotonic(),

@@ -18,3 +18,6 @@ Prices = Annotated[
     typer.Option(help="TOML file of what models cost, in the form of calls/prices.toml; goes before that."),
 ]
 Yes = Annotated[bool, typer.Option("--yes", help="Pictures of real places may be sent to a model on another machine.")]
+SampleAnew = Annotated[
+    bool, typer.Option("--sample-anew", help="Ask again what is sampled, although --cache has answers to it.")
+]

@@ -38,6 +38,7 @@ class ModelOptions:
     replay: Path | None = None
     resume: Path | None = None
     cache: Path | None = None
+    sample_anew: bool = False
     budget_usd: float | None = None
     budget_minutes: float | None = None
     yes: bool = False
@@ -81,7 +82,7 @@ class ModelOptions:
             base_url=self.base_url,
             key_variable=self.key_variable,
             prices=None if self.prices is None else read_prices(self.prices),
-            cache=None if self.cache is None else AnswerCache(self.cache),
+            cache=None if self.cache is None else AnswerCache(self.cache, sampled=not self.sample_anew),
             budget=Budget(usd=self.budget_usd, minutes=self.budget_minutes) if limited else None,
             replay=None if self.replay is None else TapePlayer(self.replay),
             past=None if self.resume is None else TapePlayer(self.resume, unfinished=True),

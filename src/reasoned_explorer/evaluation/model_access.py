@@ -21,6 +21,7 @@ class ModelAccess:
         key_variable: Environment variable of their key; None for ``OPENAI_API_KEY``.
         prices: File with what they cost, over what comes with this package, or None.
         cache: File of answers that may be used again, or None.
+        sample_anew: Whether what is sampled is asked again all the same.
         budget_usd: US dollars for this sitting, all workers together, or None for no limit.
         budget_minutes: Real time for this sitting, or None for no limit.
         since_s: When the minutes began, seconds of this machine's monotonic clock; None for when a worker begins.
@@ -36,6 +37,7 @@ class ModelAccess:
     key_variable: str | None = None
     prices: Path | None = None
     cache: Path | None = None
+    sample_anew: bool = False
     budget_usd: float | None = None
     budget_minutes: float | None = None
     since_s: float | None = None
@@ -69,7 +71,7 @@ class ModelAccess:
             base_url=self.base_url,
             key_variable=self.key_variable,
             prices=None if self.prices is None else read_prices(self.prices),
-            cache=None if self.cache is None else AnswerCache(self.cache),
+            cache=None if self.cache is None else AnswerCache(self.cache, sampled=not self.sample_anew),
             budget=budget,
             abilities=dict(self.abilities),
             pictures_may_leave=self.pictures_may_leave,
