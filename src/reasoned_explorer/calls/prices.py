@@ -107,7 +107,10 @@ def read_prices(path: Path) -> PriceTable:
 
 
 def _read(text: str, name: str) -> PriceTable:
-    expected = "[[price]] with host (without scheme and port), model, usd_per_million_in, usd_per_million_out, as_of and source"
+    expected = (
+        "[[price]] with host (without scheme and port), model, usd_per_million_in, usd_per_million_out, "
+        "as_of and source"
+    )
     try:
         plain = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
