@@ -116,10 +116,8 @@ def test_packets_that_are_none_are_counted_and_passed_over():
 
     async def test(link: Go1Link, robot: FakeGo1) -> None:
         robot.answers_with = [b"", b"hello", good[:-1], spoilt, good]
-        state = await link.wait_for_state(10.0)
-        await until(lambda: link.counts.malformed >= 4)
-        assert state.forward_mps == 0.25
-        assert "checksum" in link.last_fault
+        await until(lambda: link.counts.malformed >= 4 and "checksum" in link.last_fault)
+        await until(lambda: link.state is not None and link.state.forward_mps == 0.25)
 
     with_robot(test)
 

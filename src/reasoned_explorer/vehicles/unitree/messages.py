@@ -52,7 +52,7 @@ class HighCommand:
         speed_level: 0 slow, 1 medium, 2 fast; heeded only while walking to a position.
         foot_raise_m: Added to the height to which feet are raised, metres.
         body_height_m: Added to the height of the body, metres.
-        position_m: Where to walk to, in the frame of the robot's own odometry, metres; heeded in `Mode.WALK_TO_POSITION`.
+        position_m: Where to walk to, in the frame of the robot's own odometry, metres.
         euler_rad: Roll, pitch and yaw of the body while it stands.
         forward_mps: Speed ahead while walking.
         left_mps: Speed to the left.
