@@ -41,12 +41,17 @@ def gga(utc_of_day_s: float, lat_deg: float, lon_deg: float, *, quality: int = 4
 
 
 def rmc(
-    utc_of_day_s: float, lat_deg: float, lon_deg: float, *, speed_mps: float = 0.0, course_deg: float = 0.0
+    utc_of_day_s: float,
+    lat_deg: float,
+    lon_deg: float,
+    *,
+    speed_mps: float = 0.0,
+    course_deg: float = 0.0,
+    quality: int = 4,
 ) -> bytes:
     knots = speed_mps * 3600.0 / 1852.0
-    return sealed(
-        f"GNRMC,{clock_text(utc_of_day_s)},A,{place_text(lat_deg, lon_deg)},{knots:.4f},{course_deg:.3f},271126,,,R,V"
-    )
+    place, mode = place_text(lat_deg, lon_deg), "NADARF"[quality]
+    return sealed(f"GNRMC,{clock_text(utc_of_day_s)},A,{place},{knots:.4f},{course_deg:.3f},271126,,,{mode},V")
 
 
 def gst(utc_of_day_s: float, *, sigma_m: float = 0.014) -> bytes:
@@ -72,6 +77,6 @@ def epoch(
     course_deg = math.degrees(course_rad) % 360.0
     return (
         gga(utc_of_day_s, lat_deg, lon_deg, quality=quality)
-        + rmc(utc_of_day_s, lat_deg, lon_deg, speed_mps=speed_mps, course_deg=course_deg)
+        + rmc(utc_of_day_s, lat_deg, lon_deg, speed_mps=speed_mps, course_deg=course_deg, quality=quality)
         + gst(utc_of_day_s, sigma_m=sigma_m)
     )

@@ -1,1 +1,1 @@
-"""Where a real machine is: fixes of a satellite receiver, corrections for it, and what a filter makes of all sensors."""
+"""Where a real machine is: fixes of a satellite receiver, corrections for it, what a filter makes of all sensors."""
