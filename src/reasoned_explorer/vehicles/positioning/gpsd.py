@@ -3,7 +3,7 @@
 import asyncio
 import json
 import math
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncGenerator, Callable
 from datetime import datetime
 from typing import Any
 
@@ -95,7 +95,9 @@ class GpsdReader:
         ).as_fix(time_s, self._origin)
 
 
-async def gpsd_fixes(host: str, port: int, *, origin: GeoOrigin, now_s: Callable[[], float]) -> AsyncIterator[Fix]:
+async def gpsd_fixes(
+    host: str, port: int, *, origin: GeoOrigin, now_s: Callable[[], float]
+) -> AsyncGenerator[Fix, None]:
     """Yield what a gpsd reports, as it comes.
 
     Args:
