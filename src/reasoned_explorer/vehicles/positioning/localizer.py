@@ -108,9 +108,7 @@ class Localizer:
         time_s = measurement.time_s
         if isinstance(measurement, Fix):
             time_s -= self.settings.fix_latency_s
-        numbers = (value for value in astuple(measurement) if isinstance(value, float))
-        is_placeless = isinstance(measurement, Fix) and measurement.quality is FixQuality.NONE
-        if not math.isfinite(time_s) or not (is_placeless or all(map(math.isfinite, numbers))):
+        if not math.isfinite(time_s) or not all(map(math.isfinite, _numbers(measurement))):
             self.counts.unusable += 1
             return
         if self._newest_s > -math.inf and time_s > self._newest_s + _AHEAD_S:
@@ -162,6 +160,19 @@ class Localizer:
         if isinstance(measurement, Fix) and time_s != measurement.time_s:
             measurement = _moved(measurement, time_s)
         track.apply(measurement)
+
+
+def _numbers(measurement: Measurement) -> list[float]:
+    """Return the numbers of a measurement that the filter is given."""
+    values: tuple[float | None, ...]
+    if not isinstance(measurement, Fix):
+        values = astuple(measurement)
+    elif measurement.quality is FixQuality.NONE:
+        values = ()
+    else:
+        fix = measurement
+        values = (fix.x_m, fix.y_m, fix.sigma_m, fix.speed_mps, fix.course_rad)
+    return [value for value in values if value is not None]
 
 
 def _moved(fix: Fix, time_s: float) -> Fix:
