@@ -14,7 +14,8 @@ from reasoned_explorer.vehicles.positioning.fix import Fix, FixQuality
 from reasoned_explorer.vehicles.positioning.localizer import Localizer, LocalizerSettings
 from reasoned_explorer.vehicles.positioning.measurements import CompassReading, ImuSample, OdometryReading
 from reasoned_explorer.vehicles.positioning.receivers import RECEIVERS, ReceiverModel
-from reasoned_explorer.vehicles.positioning.track import Measurement, TrackSettings
+from reasoned_explorer.vehicles.positioning.track import Measurement
+from reasoned_explorer.vehicles.positioning.track_settings import TrackSettings
 
 TICK_HZ = 50
 FIX_EVERY, COMPASS_EVERY, ODOMETRY_EVERY = 10, 10, 5

@@ -12,7 +12,8 @@ from reasoned_explorer.vehicles.positioning.fix import Fix, FixQuality
 from reasoned_explorer.vehicles.positioning.localizer import Localization, Localizer, LocalizerSettings
 from reasoned_explorer.vehicles.positioning.measurements import CompassReading, ImuSample, OdometryReading
 from reasoned_explorer.vehicles.positioning.receivers import ReceiverModel
-from reasoned_explorer.vehicles.positioning.track import Measurement, TrackSettings
+from reasoned_explorer.vehicles.positioning.track import Measurement
+from reasoned_explorer.vehicles.positioning.track_settings import TrackSettings
 from reasoned_explorer.vehicles.positioning.verdict import Grade, PositionLimits
 from tests.vehicles.positioning.drives import TRUTHS, follow, readings, rms, told, walk
 
@@ -276,6 +277,31 @@ def test_from_fixed_to_single_and_back_the_good_position_is_kept():
     assert good is not None
     assert there.estimate is not None
     assert there.estimate.position_sigma_m < 2.0 * good.position_sigma_m
+
+
+def test_a_receiver_that_goes_to_and_fro_between_qualities_does_not_make_it_sure():
+    """As with corrections from a satellite that stands low; the errors of both last."""
+    localizer = Localizer()
+    for tick in range(300):
+        t = 0.2 * tick
+        localizer.take(ImuSample(t, 0.0))
+        localizer.take(CompassReading(t, 0.0))
+        localizer.take(OdometryReading(t, 0.0))
+        quality, x_m = (FixQuality.DGPS, 0.6) if tick % 2 else (FixQuality.SINGLE, 2.0)
+        localizer.take(fix(t, x_m, 0.0, quality=quality))
+    there = localizer.at(59.8)
+    assert there.estimate is not None
+    assert 0.5 < there.estimate.position_sigma_m < 1.0
+    assert abs(there.estimate.pose.x_m - 0.6) < 0.5
+    assert localizer.counts.fixes_refused == 0
+
+
+def test_a_jump_together_with_another_quality_is_refused_all_the_same():
+    rover = Rover()
+    rover.go(10.0)
+    rover.jump_m, rover.quality = 30.0, FixQuality.FLOAT
+    assert rover.poor_after_s(2.0) <= 1.0
+    assert rover.off_m(rover.verdicts[-1]) < 0.5
 
 
 def test_a_receiver_that_says_how_bad_it_is_is_heard():

@@ -17,7 +17,7 @@ from reasoned_explorer.vehicles.positioning.source import (
     parse_ntrip,
     parse_source,
 )
-from reasoned_explorer.vehicles.positioning.track import TrackSettings
+from reasoned_explorer.vehicles.positioning.track_settings import TrackSettings
 from reasoned_explorer.vehicles.positioning.verdict import Grade, PositionLimits, PositionVerdict
 
 __all__ = [

@@ -9,7 +9,8 @@ from reasoned_explorer.model.checks import is_within
 from reasoned_explorer.vehicles.control.localization import PoseEstimate
 from reasoned_explorer.vehicles.positioning.fix import Fix, FixQuality
 from reasoned_explorer.vehicles.positioning.measurements import CompassReading, ImuSample, OdometryReading
-from reasoned_explorer.vehicles.positioning.track import Measurement, Track, TrackSettings
+from reasoned_explorer.vehicles.positioning.track import Measurement, Track
+from reasoned_explorer.vehicles.positioning.track_settings import TrackSettings
 from reasoned_explorer.vehicles.positioning.verdict import Evidence, PositionLimits, PositionVerdict, judge
 
 # Of measurements of one moment those that say how the machine moved come before those that say where it is.

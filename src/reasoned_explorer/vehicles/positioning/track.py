@@ -2,19 +2,18 @@
 
 import copy
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass
 
 import numpy as np
 
 from reasoned_explorer.geometry import Pose
-from reasoned_explorer.model import Fault, SettingsError
-from reasoned_explorer.model.checks import is_within
 from reasoned_explorer.vehicles.control import kernels
-from reasoned_explorer.vehicles.control.localization import FilterSettings, PoseFilter
+from reasoned_explorer.vehicles.control.localization import PoseFilter
+from reasoned_explorer.vehicles.positioning import wander
 from reasoned_explorer.vehicles.positioning.fix import Fix, FixQuality
 from reasoned_explorer.vehicles.positioning.measurements import CompassReading, ImuSample, OdometryReading
-from reasoned_explorer.vehicles.positioning.receivers import RECEIVERS, ReceiverModel
+from reasoned_explorer.vehicles.positioning.receivers import ReceiverModel
+from reasoned_explorer.vehicles.positioning.track_settings import TrackSettings
 
 Measurement = ImuSample | CompassReading | OdometryReading | Fix
 
@@ -28,73 +27,6 @@ _LONGEST_ALONE_S = 120.0
 # From this speed on a course tells where a machine that walks ahead is facing, if nothing else does.
 _TELLING_MPS = 0.5
 _COURSE_SIGMA_RAD = math.radians(20.0)
-
-
-@dataclass(frozen=True, slots=True)
-class TrackSettings:
-    """What the sensors are worth, in real time.
-
-    Attributes:
-        receivers: What fixes of each quality are worth.
-        gyro_density_radps: White noise of the gyro per square root of hertz.
-        gyro_bias_walk_radps: Random walk of its bias per square root of second.
-        gyro_bias_sigma_radps: Its unknown bias at the start.
-        acceleration_density_mps2: White noise of measured accelerations per square root of hertz.
-        unknown_acceleration_mps2: Likewise of what the machine does where no accelerations are measured.
-        unknown_turn_radps: White noise of the turn rate where no turn rates come in.
-        compass_sigma_rad: White error of the compass.
-        compass_wander_rad: Its slow error.
-        compass_wander_tau_s: Correlation time of that, seconds.
-        odometry_sigma_mps: White error of the odometry per axis.
-        odometry_scale_sigma: Error of its scale, a share; counts where there are no fixes that would make up for it.
-        imu_hold_s: A turn rate is taken to go on for so long when none follows.
-        rejects: So many refusals in a row make the filter start that part over.
-
-    Raises:
-        SettingsError: If a figure is no finite number > 0, or a quality has no model.
-    """
-
-    receivers: Mapping[FixQuality, ReceiverModel] = field(default_factory=lambda: RECEIVERS)
-    gyro_density_radps: float = math.radians(0.02)
-    gyro_bias_walk_radps: float = math.radians(0.003)
-    gyro_bias_sigma_radps: float = math.radians(0.5)
-    acceleration_density_mps2: float = 0.05
-    unknown_acceleration_mps2: float = 0.3
-    unknown_turn_radps: float = 0.5
-    compass_sigma_rad: float = math.radians(1.0)
-    compass_wander_rad: float = math.radians(2.0)
-    compass_wander_tau_s: float = 120.0
-    odometry_sigma_mps: float = 0.05
-    odometry_scale_sigma: float = 0.03
-    imu_hold_s: float = 0.15
-    rejects: int = 20
-
-    def __post_init__(self) -> None:
-        faults = [
-            Fault(f"{item.name} = {getattr(self, item.name)}", "a finite number > 0")
-            for item in fields(self)
-            if item.name != "receivers" and not (is_within(getattr(self, item.name)) and getattr(self, item.name) > 0)
-        ]
-        faults += [
-            Fault(f"no model of fixes that are {quality.as_text}", "one for each quality but none")
-            for quality in FixQuality
-            if quality is not FixQuality.NONE and quality not in self.receivers
-        ]
-        if faults:
-            raise SettingsError("localization in real time", faults)
-
-    def filter_settings(self, receiver: ReceiverModel) -> FilterSettings:
-        """Return the filter's settings for fixes of a kind."""
-        return FilterSettings(
-            gyro_density_radps=self.gyro_density_radps,
-            acceleration_density_mps2=self.acceleration_density_mps2,
-            gyro_bias_walk_radps=self.gyro_bias_walk_radps,
-            wander_sigma_m=receiver.wander_m,
-            wander_tau_s=receiver.wander_tau_s,
-            compass_wander_sigma_rad=self.compass_wander_rad,
-            compass_wander_tau_s=self.compass_wander_tau_s,
-            rejects=self.rejects,
-        )
 
 
 @dataclass(slots=True)
@@ -253,13 +185,13 @@ class Track:
         if self.filter is None:
             self._begin(fix, receiver)
             return
-        self._retune(self.filter, receiver, is_new=fix.quality is not last)
-        expected = (
-            self.filter.state[[kernels.EKF_X, kernels.EKF_Y]]
-            + self.filter.state[[kernels.EKF_WANDER_X, kernels.EKF_WANDER_Y]]
-        )
-        off_m = math.hypot(fix.x_m - float(expected[0]), fix.y_m - float(expected[1]))
-        believed = self.filter.position(fix.x_m, fix.y_m, sigma_m=receiver.white_m)
+        wander.retune(self.filter, self._receiver, receiver)
+        self._receiver = receiver
+        off_m = wander.off_m(self.filter, fix)
+        if fix.quality is not last:
+            believed, off_m = wander.change(self.filter, fix, receiver)
+        else:
+            believed = self.filter.position(fix.x_m, fix.y_m, sigma_m=receiver.white_m)
         self.fixes.note(fix.time_s, believed=believed, rejects=self.settings.rejects)
         if not believed:
             self.off_m = off_m
@@ -283,9 +215,9 @@ class Track:
             gyro_bias_sigma_radps=self.settings.gyro_bias_sigma_radps,
         )
         state, cov = self.filter.state, self.filter.covariance
-        for place, wander in ((kernels.EKF_X, kernels.EKF_WANDER_X), (kernels.EKF_Y, kernels.EKF_WANDER_Y)):
+        for place, slow in zip(wander.PLACES, wander.WANDERS, strict=True):
             # The position is as far off as the receiver is: more fixes of the same error say nothing new.
-            cov[place, wander] = cov[wander, place] = -(receiver.wander_m**2)
+            cov[place, slow] = cov[slow, place] = -(receiver.wander_m**2)
         if self._heading is not None:
             cov[kernels.EKF_HEADING, kernels.EKF_COMPASS_WANDER] = -(self.settings.compass_wander_rad**2)
             cov[kernels.EKF_COMPASS_WANDER, kernels.EKF_HEADING] = -(self.settings.compass_wander_rad**2)
@@ -296,21 +228,3 @@ class Track:
             state[kernels.EKF_VY] = speed_mps * math.cos(course_rad)
             cov[kernels.EKF_VX, kernels.EKF_VX] = cov[kernels.EKF_VY, kernels.EKF_VY] = receiver.velocity_mps**2
         self._receiver, self.believed_s, self.time_s = receiver, fix.time_s, fix.time_s
-
-    def _retune(self, filter_: PoseFilter, receiver: ReceiverModel, *, is_new: bool) -> None:
-        """Make the filter expect fixes of another kind.
-
-        A solution of another quality has an error of its own, which has nothing to do with that of the last one. One of
-        the same quality that is told to be worse has the old error and some more.
-        """
-        cov = filter_.covariance
-        for wander in (kernels.EKF_WANDER_X, kernels.EKF_WANDER_Y):
-            if is_new:
-                filter_.state[wander] = 0.0
-                cov[wander, :] = cov[:, wander] = 0.0
-                cov[wander, wander] = receiver.wander_m**2
-            else:
-                cov[wander, wander] += max(0.0, receiver.wander_m**2 - self._receiver.wander_m**2)
-        filter_.settings_array[kernels.SET_WANDER_SIGMA] = receiver.wander_m
-        filter_.settings_array[kernels.SET_WANDER_TAU] = receiver.wander_tau_s
-        self._receiver = receiver
