@@ -153,16 +153,18 @@ class Errors:
     Attributes:
         position_m: At each fix after the first half minute, metres.
         heading_rad: Likewise of the heading.
+        says_m: How far it said that it may be off, for both axes together.
     """
 
     position_m: np.ndarray
     heading_rad: np.ndarray
+    says_m: np.ndarray
 
 
 def follow(path: Walk, said: list[Measurement], settings: LocalizerSettings, *, from_s: float = 30.0) -> Errors:
     """Return how far a localizer is off that is given readings."""
     localizer = Localizer(replace(settings, lag_s=0.0))
-    position, heading = [], []
+    position, heading, says = [], [], []
     for measurement in said:
         localizer.take(measurement)
         if isinstance(measurement, Fix) and measurement.time_s >= from_s:
@@ -171,7 +173,8 @@ def follow(path: Walk, said: list[Measurement], settings: LocalizerSettings, *, 
             assert estimate is not None
             position.append(estimate.pose.distance_to_m(float(path.x_m[tick]), float(path.y_m[tick])))
             heading.append(bearing_between_rad(float(path.heading_rad[tick]), estimate.pose.heading_rad))
-    return Errors(np.array(position), np.array(heading))
+            says.append(math.sqrt(2.0) * estimate.position_sigma_m)
+    return Errors(np.array(position), np.array(heading), np.array(says))
 
 
 def rms(values: np.ndarray) -> float:
@@ -182,3 +185,9 @@ def rms(values: np.ndarray) -> float:
 def told(truth: Truth) -> LocalizerSettings:
     """Return the settings of a localizer that is told how the receiver really errs."""
     return LocalizerSettings(track=TrackSettings(receivers={**RECEIVERS, truth.quality: truth.model}))
+
+
+def credulous(truth: Truth) -> LocalizerSettings:
+    """Return the settings of a localizer that takes all of the receiver's error to be new in each fix."""
+    white = ReceiverModel(truth.model.sigma_m, 1e-4, 1.0, truth.model.velocity_mps)
+    return LocalizerSettings(track=TrackSettings(receivers={**RECEIVERS, truth.quality: white}))

@@ -15,7 +15,7 @@ from reasoned_explorer.vehicles.positioning.receivers import ReceiverModel
 from reasoned_explorer.vehicles.positioning.track import Measurement
 from reasoned_explorer.vehicles.positioning.track_settings import TrackSettings
 from reasoned_explorer.vehicles.positioning.verdict import Grade, PositionLimits
-from tests.vehicles.positioning.drives import TRUTHS, follow, readings, rms, told, walk
+from tests.vehicles.positioning.drives import TRUTHS, credulous, follow, readings, rms, told, walk
 
 SPEED = 0.8
 
@@ -100,6 +100,15 @@ def test_with_errors_as_real_receivers_have_them_it_is_about_as_good_as_one_that
     ours, best = follow(path, said, LocalizerSettings()), follow(path, said, told(truth))
     assert rms(ours.position_m) <= 1.2 * rms(best.position_m)
     assert math.degrees(rms(ours.heading_rad)) <= 2.0
+    # One walk is off by what its receiver happens to be off by: more than this would be a lie.
+    assert rms(ours.position_m) < 2.5 * rms(ours.says_m)
+    assert rms(ours.says_m) < 4.0 * rms(best.says_m)
+
+
+def test_one_that_takes_lasting_errors_for_new_ones_lies():
+    truth, path = TRUTHS["RTK float"], walk(120.0)
+    errors = follow(path, readings(path, truth, 7, tells_sigma=False), credulous(truth))
+    assert rms(errors.position_m) > 2.5 * rms(errors.says_m)
 
 
 def test_it_does_not_believe_itself_better_than_its_receiver_is():
