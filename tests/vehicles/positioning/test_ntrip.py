@@ -134,8 +134,8 @@ def test_a_caster_that_repeats_the_password_does_not_get_it_into_an_error():
 
 
 def test_a_caster_that_falls_silent_is_told_of():
-    with pytest.raises(PartError, match=r"nothing for 0\.05 s"):
-        fed(FakeCaster(b"ICY 200 OK\r\n", RTCM, holds=True), silence_s=0.05)
+    with pytest.raises(PartError, match=r"nothing for 0\.5 s"):
+        fed(FakeCaster(b"ICY 200 OK\r\n", RTCM, holds=True), silence_s=0.5)
 
 
 def test_a_receiver_that_cannot_be_written_to_ends_the_stream():
