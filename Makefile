@@ -11,7 +11,7 @@ export OMP_NUM_THREADS := 1
 TORCH ?= torch==2.13.0$(if $(filter Linux,$(shell uname -s)),+cpu)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup minilm local demo test check format docs bench clean
+.PHONY: help setup minilm local vendor demo test check format docs bench clean
 
 help: ## Say what there is to make
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | sort
@@ -35,6 +35,10 @@ local: $(VENV)/.local ## Get torch and transformers, for models on this machine 
 $(VENV)/.local: $(READY)
 	$(BIN)/python -m pip install --quiet '$(TORCH)' --editable '.[local,served]'
 	@touch $@
+
+# Its metadata ask for tools that build packages, which nothing here needs: without its dependencies.
+vendor: $(READY) ## Get Unitree's own library, which ours is tested against (optional, x86-64 Linux, BSD)
+	$(BIN)/python -m pip install --quiet --no-deps 'unitree_legged_sdk==3.8.20231105'
 
 setup: $(READY) ## Set up the virtual environment
 
