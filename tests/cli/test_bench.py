@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 
 from reasoned_explorer.cli.app import app
 from reasoned_explorer.evaluation.bench.store import RunStore
+from reasoned_explorer.task.split import SPLIT_VERSION
 from tests.cli.full_disk import rex_with_files_up_to
 
 TINY = ["--world", "park:5@300", "--per-cell", "1", "--levels", "1", "--t-max", "2", "--workers", "1"]
@@ -174,7 +175,7 @@ def test_a_report_does_without_a_world_that_is_gone() -> None:
 
 def test_vehicles_have_tables_of_their_own_and_one_in_the_papers_form() -> None:
     folder, shown = _made(Path("run"), *TINY, *ONE, "--vehicle", "drone-authors,go1-authors")
-    assert shown.count("own/L1 v1 [") == 2
+    assert shown.count(f"own/L1 v{SPLIT_VERSION} [") == 2
     assert "SR drone-authors | OSR drone-authors | CASR drone-authors | SR go1-authors" in shown
     assert "The paper's Table II" in shown
     assert _rex("report", str(folder))[0] == 0
