@@ -53,6 +53,8 @@ class ModelOptions:
             *_recording_faults(self.record, self.replay, self.resume),
             *faults_of_budget(self.budget_usd, self.budget_minutes),
         ]
+        if self.sample_anew and self.cache is None:
+            faults.append(Fault("--sample-anew without --cache", "a cache to leave aside", "name one, or leave it out"))
         if not called:
             faults += [
                 Fault(f"{name} without a model that is called", "minds such as openai:gpt-4o-mini", "or leave it out")
@@ -64,7 +66,7 @@ class ModelOptions:
     def _named(self) -> list[tuple[str, object]]:
         plain = asdict(self)
         del plain["yes"]
-        return [(f"--{name.replace('_', '-')}", value) for name, value in plain.items()]
+        return [(f"--{name.replace('_', '-')}", value) for name, value in plain.items() if value is not False]
 
     def check(self, settings: MissionSettings, found: Gathering) -> None:
         """Keep what is wrong with it for one mission."""
