@@ -14,10 +14,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from reasoned_explorer.rendering.compiling import kernel, part
 from reasoned_explorer.rendering.library import Library
 from reasoned_explorer.rendering.projection import NEAR_M, Projection
 from reasoned_explorer.rendering.scene import Cells, Instances
+from reasoned_explorer.world.compiling import kernel, part
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]

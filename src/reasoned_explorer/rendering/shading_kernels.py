@@ -9,11 +9,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from reasoned_explorer.rendering.compiling import inlined, kernel, part
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.projection import Projection
 from reasoned_explorer.rendering.raster_kernels import GROUND, SKY, Canvas
 from reasoned_explorer.rendering.shadow_kernels import ShadowMaps, sunlight_at
+from reasoned_explorer.world.compiling import inlined, kernel, part
 
 Rgb = tuple[float, float, float]
 Codes = NDArray[np.uint8]

@@ -1,8 +1,6 @@
-"""How the renderer's kernels are compiled."""
+"""How kernels are compiled that make no arrays."""
 
 from collections.abc import Callable
-from functools import lru_cache
-from pathlib import Path
 from typing import Any, TypeVar
 
 from numba import njit
@@ -33,14 +31,3 @@ def inlined(function: F) -> F:
     """Return a `part` that becomes a piece of each of its callers: for those that take many arrays."""
     compiled: F = njit(**_OPTIONS, no_cfunc_wrapper=True, no_cpython_wrapper=True, forceinline=True)(function)
     return compiled
-
-
-@lru_cache(maxsize=1)
-def cache_folder() -> Path | None:
-    """Return where compiled code is kept between processes, or None where nothing is compiled."""
-    compiled: Any = njit(cache=True)(_anything)
-    return Path(compiled.stats.cache_path) if hasattr(compiled, "stats") else None
-
-
-def _anything() -> None:
-    """Stands for all functions of this folder: they are kept in one place."""
