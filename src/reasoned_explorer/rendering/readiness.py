@@ -79,7 +79,8 @@ def keep(part: str) -> None:
             beside.write_text(_fingerprint(), encoding="utf-8")
             beside.replace(note)
         except OSError:
-            beside.unlink(missing_ok=True)
+            with suppress(OSError):
+                beside.unlink(missing_ok=True)
 
 
 def compile_missing(parts: Iterable[str], compile_part: Callable[[str], None]) -> list[str]:

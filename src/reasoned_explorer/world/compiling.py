@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 from numba import njit
+from numba.core.caching import FunctionCache
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -15,10 +16,25 @@ _OPTIONS: dict[str, Any] = {
 }  # fmt: skip
 
 
+class _Store(FunctionCache):  # type: ignore[misc]
+    """Where a kernel is kept on disk; reads it without getting numba ready to compile, which takes half a second.
+
+    That is needed for what kernels do not have: memory management, and other objects than arrays and numbers.
+    """
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return the compiled kernel for types of arguments, or None where it is not kept; as numba's own."""
+        with self._guard_against_spurious_io_errors():
+            return self._load_overload(sig, target_context)
+
+
 def kernel(function: F) -> F:
     """Return a function compiled for plain arrays and numbers; it makes no arrays and lets other threads run."""
-    compiled: F = njit(**_OPTIONS, no_cfunc_wrapper=True)(function)
-    return compiled
+    compiled: Any = njit(**_OPTIONS, no_cfunc_wrapper=True)(function)
+    if isinstance(getattr(compiled, "_cache", None), FunctionCache):
+        compiled._cache = _Store(function)
+    kept: F = compiled
+    return kept
 
 
 def part(function: F) -> F:
