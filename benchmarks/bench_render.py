@@ -6,8 +6,8 @@ line says whether its bar is met; bars are for one core of a machine that does n
 - pictures of 224 × 224 with depth and ids: 80 a second, with 2 × 2 samples a pixel 35 a second;
 - depth and ids alone at 96 × 96: 600 a second;
 - two threads: 1.7 times as many pictures as one;
-- with ``--cold``, ``rex look`` at a world of 200 m: 15 s with nothing compiled, 2 s with compiled code kept; and the same for
-  a new process's first picture of the world, but for opening it;
+- with ``--cold``, ``rex look`` at a world of 200 m: 15 s with nothing compiled, 2 s with compiled code kept; and the same
+  for a new process's first picture of the world, but for opening it;
 - ids that agree with Embree: 99.99 % of pixels.
 """
 
@@ -172,9 +172,9 @@ def main() -> None:
                 report(name, seconds_to_look(cache), bar, unit="s", most=True)
         with tempfile.TemporaryDirectory() as cache:
             for name, bar in (("first picture, nothing compiled", 15.0), ("first picture, compiled code kept", 2.0)):
-                loading, opening, scene, picture = first_picture(chosen.world, cache)
-                report(name, loading + scene + picture, bar, unit="s", most=True)
-                print(f"  loading {loading:.2f} s, scene {scene:.2f} s, renderer and picture {picture:.2f} s", end="")
+                loading, opening, making, picture = first_picture(chosen.world, cache)
+                report(name, loading + making + picture, bar, unit="s", most=True)
+                print(f"  loading {loading:.2f} s, scene {making:.2f} s, renderer and picture {picture:.2f} s", end="")
                 print(f" (and {opening:.2f} s to open the world)")
 
 

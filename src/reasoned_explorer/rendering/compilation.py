@@ -77,6 +77,7 @@ def _compile_shading(scene: Scene) -> None:
         developing_curve(),
         room.wanted,
         *room.samples,
+        1,
         np.empty((_SIDE, _SIDE, 3), np.uint8),
     )
 

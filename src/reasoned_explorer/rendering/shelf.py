@@ -85,7 +85,7 @@ def _model_of(arrays: Arrays) -> Model:
 def _read(content: NDArray[np.uint8]) -> Arrays:
     head = content[:_HEAD_SIZE].tobytes().decode("ascii").split()
     rest = content[_HEAD_SIZE:]
-    if head[:-1] != [_maker(), f"{zlib.crc32(rest):08x}"]:
+    if head[:-1] != [_maker(), f"{zlib.crc32(rest.data):08x}"]:
         raise ValueError("made by something else, or damaged")
     length = int(head[-1])
     found, at = [], _room(length)
