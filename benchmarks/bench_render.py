@@ -6,7 +6,7 @@ line says whether its bar is met; bars are for one core of a machine that does n
 - pictures of 224 × 224 with depth and ids: 80 a second, with 2 × 2 samples a pixel 35 a second;
 - depth and ids alone at 96 × 96: 600 a second;
 - two threads: 1.7 times as many pictures as one;
-- with ``--cold``, ``rex look`` at a world of 200 m: 15 s with nothing compiled, 2 s with compiled code kept; and the same
+- with ``--cold``, ``rex look`` at a world of 200 m: 15 s with nothing compiled, 2 s with compiled code kept; the same
   for a new process's first picture of the world, but for opening it;
 - ids that agree with Embree: 99.99 % of pixels.
 """

@@ -10,7 +10,7 @@ from functools import lru_cache
 from typing import Any, TypeVar
 
 from numba import njit
-from numba.core import typed_passes, types, untyped_passes
+from numba.core import types
 from numba.core.caching import FunctionCache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
@@ -18,17 +18,19 @@ from numba.core.compiler import CompilerBase, DefaultPassBuilder
 F = TypeVar("F", bound=Callable[..., Any])
 
 #: What numba does for closures, array expressions, and functions that are inlined before types are known.
-_NEEDLESS_PASSES = {
-    untyped_passes.WithLifting,
-    untyped_passes.InlineClosureLikes,
-    untyped_passes.MakeFunctionToJitFunction,
-    untyped_passes.InlineInlinables,
-    untyped_passes.FindLiterallyCalls,
-    untyped_passes.LiteralUnroll,
-    untyped_passes.LiteralPropagationSubPipelinePass,
-    typed_passes.InlineOverloads,
-    typed_passes.NopythonRewrites,
-}
+_NEEDLESS_PASSES = frozenset(
+    {
+        "WithLifting",
+        "InlineClosureLikes",
+        "MakeFunctionToJitFunction",
+        "InlineInlinables",
+        "FindLiterallyCalls",
+        "LiteralUnroll",
+        "LiteralPropagationSubPipelinePass",
+        "InlineOverloads",
+        "NopythonRewrites",
+    }
+)
 
 
 def kernel(function: F) -> F:
@@ -61,7 +63,7 @@ class _Compiler(CompilerBase):  # type: ignore[misc]
     def define_pipelines(self) -> list[Any]:
         """Return numba's passes but for `_NEEDLESS_PASSES`."""
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        passes.passes = [one for one in passes.passes if one[0] not in _NEEDLESS_PASSES]
+        passes.passes = [one for one in passes.passes if one[0].__name__ not in _NEEDLESS_PASSES]
         passes.finalize()
         return [passes]
 
