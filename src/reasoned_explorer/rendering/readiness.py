@@ -29,7 +29,7 @@ Progress = Callable[[str], None]
 #: What can be compiled by itself; what takes longest first.
 PARTS: tuple[str, ...] = ("shading", "raster", "shadows")
 #: Roughly how many functions there are; only for people who wait.
-FUNCTIONS = 66
+FUNCTIONS = 56
 _FIRST_TIME = "compiling the renderer, the first time only"
 
 
