@@ -219,6 +219,7 @@ def look_from_options(options: LookOptions) -> None:
     if order.kind == "--contact-sheet":
         from reasoned_explorer.rendering.contact_sheet import contact_sheet
 
+        make_ready(stage)
         stage("the classes")
         colour = contact_sheet(conditions=conditions_named(options.conditions))
         write_together(files_of(options.out, colour))
