@@ -139,10 +139,18 @@ def test_a_real_place_takes_latitude_and_longitude_and_thanks_its_mappers(osm_fo
 
 
 def test_it_says_that_it_compiles_where_nothing_is_compiled_yet(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(look_module, "_is_compiled", lambda: False)
+    monkeypatch.setattr(look_module, "is_ready", lambda: False)
     _, shown = _rex(*SMALL)
     assert "the first time only" in shown
-    assert shown.index("the world …") < shown.index("what things look like …") < shown.index("light and shadow …")
+    told = ("the world …", "what things look like …", "buildings …", "light and shadow …")
+    assert [shown.index(line) for line in told] == sorted(shown.index(line) for line in told)
+
+
+def test_it_says_how_far_compiling_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(look_module, "is_ready", lambda: False)
+    monkeypatch.setattr(look_module, "make_ready", lambda stage: stage("about 40 %"))
+    _, shown = _rex(*SMALL)
+    assert shown.index("things …") < shown.index("about 40 % …") < shown.index("light and shadow …")
 
 
 def _documented() -> list[str]:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from reasoned_explorer.cli.answers import complain
 from reasoned_explorer.cli.console import Output
@@ -16,6 +16,7 @@ from reasoned_explorer.model import Camera, Fault, Gathering, SettingsError
 from reasoned_explorer.model.checks import is_within
 from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.rendering.conditions import conditions_named
+from reasoned_explorer.rendering.readiness import begin, is_ready, make_ready
 from reasoned_explorer.world.opening import check_world_name, open_world_with_notes
 from reasoned_explorer.world.world import World
 
@@ -209,13 +210,16 @@ def look_from_options(options: LookOptions) -> None:
     def say(line: str) -> None:
         console.print(line, markup=False, soft_wrap=True)
 
-    compiling = not _is_compiled()
+    compiling = not is_ready()
     if compiling:
-        say("compiling what draws, which takes up to a minute (the first time only):")
+        say("compiling what draws, which takes a quarter of a minute or so (the first time only):")
     stage: Callable[[str], None] = (lambda what: say(f"  {what} …")) if compiling else (lambda _: None)
+    # What is missing is compiled beside the making of the world.
+    begin()
     if order.kind == "--contact-sheet":
         from reasoned_explorer.rendering.contact_sheet import contact_sheet
 
+        make_ready(stage)
         stage("the classes")
         colour = contact_sheet(conditions=conditions_named(options.conditions))
         write_together(files_of(options.out, colour))
@@ -259,12 +263,9 @@ def _drawn(order: _Order, world: World, pose: Pose, stage: Callable[[str], None]
 
     options, conditions = order.options, conditions_named(order.options.conditions)
     stage("what things look like")
-    scene = Scene.of(world)
+    scene = Scene.of(world, on_progress=lambda what: stage(f"  {what}"))
     stop_if_asked()
-    stage("what stands where")
-    renderer = Renderer(scene, conditions)
-    renderer.ids(pose, Camera(16, 16))
-    stop_if_asked()
+    make_ready(stage)
     stage("light and shadow")
     if order.kind == "--top-down":
         from reasoned_explorer.rendering.overhead import overhead
@@ -286,7 +287,7 @@ def _drawn(order: _Order, world: World, pose: Pose, stage: Callable[[str], None]
             True,
             scene,
         )
-    return _around(order, renderer, pose), False, scene
+    return _around(order, Renderer(scene, conditions), pose), False, scene
 
 
 def _around(order: _Order, renderer: "Renderer", pose: Pose) -> "Picture":
@@ -301,11 +302,3 @@ def _around(order: _Order, renderer: "Renderer", pose: Pose) -> "Picture":
     elif options.sweep is not None:
         bearings_rad = tuple(ExplorerSettings(views=options.sweep).bearings_rad())
     return side_by_side(renderer, pose, camera, bearings_rad, pitch_rad=order.pitch_rad)
-
-
-def _is_compiled() -> bool:
-    """Return whether the kernel that takes longest to compile is in numba's store on disk."""
-    from reasoned_explorer.rendering.shading_kernels import shade
-
-    store: Any = shade  # numba's, whose type its own function keeps
-    return any(Path(store.stats.cache_path).glob("shading_kernels.shade-*.nbi"))

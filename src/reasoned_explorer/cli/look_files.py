@@ -104,7 +104,8 @@ def _png(pixels: NDArray[np.uint8] | NDArray[np.uint16], thanks: str) -> bytes:
     about, file = PngInfo(), BytesIO()
     if thanks:
         about.add_itxt("Copyright", thanks)
-    Image.fromarray(pixels).save(file, "PNG", pnginfo=about)
+    # A twentieth larger than at the usual level, and written in a third of the time.
+    Image.fromarray(pixels).save(file, "PNG", pnginfo=about, compress_level=2)
     return file.getvalue()
 
 

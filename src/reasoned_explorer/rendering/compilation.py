@@ -4,15 +4,12 @@ Kernels are called as `Renderer` calls them, on next to nothing, so that numba c
 """
 
 import sys
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 
-import numba.core.event
 import numpy as np
 
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Camera
-from reasoned_explorer.rendering.compiling import cache_folder
 from reasoned_explorer.rendering.conditions import Conditions
 from reasoned_explorer.rendering.ground import GroundMap
 from reasoned_explorer.rendering.light import developing_curve, light_of, sun_direction
@@ -21,7 +18,7 @@ from reasoned_explorer.rendering.mesh import Mesh, Model
 from reasoned_explorer.rendering.mipmaps import ground_looks_of, surfaces_of, textures_of
 from reasoned_explorer.rendering.projection import projection_of
 from reasoned_explorer.rendering.raster_kernels import SKY, draw, read_out
-from reasoned_explorer.rendering.readiness import is_kept, keep
+from reasoned_explorer.rendering.readiness import compile_missing, telling
 from reasoned_explorer.rendering.room import Room, new_canvas
 from reasoned_explorer.rendering.scene import FIRST_BUILDING_ID, Placed, Scene
 from reasoned_explorer.rendering.shading_kernels import shade
@@ -32,7 +29,7 @@ _VIEW = projection_of(Pose(0.0, 0.0, 500.0), Camera(_SIDE, _SIDE))
 
 
 def compile_part(part: str) -> None:
-    """Compile a part (see `reasoned_explorer.rendering.readiness.SHARES`), or read it from disk if it is there."""
+    """Compile a part (see `reasoned_explorer.rendering.readiness.PARTS`), or read it from disk if it is there."""
     _PARTS[part](_scene())
 
 
@@ -80,6 +77,7 @@ def _compile_shading(scene: Scene) -> None:
         developing_curve(),
         room.wanted,
         *room.samples,
+        1,
         np.empty((_SIDE, _SIDE, 3), np.uint8),
     )
 
@@ -98,42 +96,10 @@ _PARTS: Mapping[str, Callable[[Scene], None]] = {
 }
 
 
-class _Teller(numba.core.event.Listener):  # type: ignore[misc]
-    """Says a line for each function that was compiled."""
-
-    def on_start(self, event: numba.core.event.Event) -> None:
-        pass
-
-    def on_end(self, event: numba.core.event.Event) -> None:
-        sys.stdout.write(f"{event.data['dispatcher'].py_func.__name__}\n")
-        sys.stdout.flush()
-
-
-@contextmanager
-def _alone(part: str) -> Iterator[None]:
-    """One process at a time compiles a part; the others then find it on disk. Where that cannot be, all do."""
-    folder = cache_folder()
-    try:
-        import fcntl
-    except ImportError:
-        folder = None
-    if folder is None:
-        yield
-        return
-    folder.mkdir(parents=True, exist_ok=True)
-    with (folder / f"renderer-{part}.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        yield
-
-
 def main() -> None:
-    """Compile the parts that the command line names and that are not there yet."""
-    numba.core.event.register("numba:compile", _Teller())
-    for part in sys.argv[1:]:
-        with _alone(part):
-            if not is_kept(part):
-                compile_part(part)
-                keep(part)
+    """Compile the parts that the command line names and that are not there yet; say a line for each function."""
+    with telling(lambda name: print(name, flush=True)):
+        compile_missing(sys.argv[1:], compile_part)
 
 
 if __name__ == "__main__":

@@ -5,10 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from reasoned_explorer.rendering.crossings import crossings_of
-from reasoned_explorer.rendering.ground_map import ground_colours, ground_map_of, ground_materials
 from reasoned_explorer.rendering.library import linear_from_srgb
-from reasoned_explorer.rendering.markings import markings_of
 from reasoned_explorer.rendering.mesh import Model
 from reasoned_explorer.world.world import World
 
@@ -34,6 +31,10 @@ class GroundMap:
 
 def ground_of(world: World) -> GroundMap:
     """Return a world's ground."""
+    from reasoned_explorer.rendering.crossings import crossings_of
+    from reasoned_explorer.rendering.ground_map import ground_colours, ground_map_of, ground_materials
+    from reasoned_explorer.rendering.markings import markings_of
+
     crossings = crossings_of(world)
     raster = ground_map_of(world, crossings=crossings)
     markings = tuple(markings_of(world, raster, crossings=crossings))

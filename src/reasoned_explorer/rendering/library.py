@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from reasoned_explorer.rendering.mesh import Mesh, Model
+from reasoned_explorer.rendering.mesh import Model
 
 T = TypeVar("T", bound=np.generic)
 
@@ -46,8 +46,9 @@ def pack(models: Sequence[Model]) -> Library:
     firsts = np.cumsum(sizes, axis=0) - sizes
     levels = np.stack([firsts[:, 0], sizes[:, 0], firsts[:, 1], sizes[:, 1]], axis=1).astype(np.int32)
     triangles = [mesh.triangles + first for mesh, first in zip(meshes, firsts[:, 0], strict=True)]
+    vertices = _joined([mesh.vertices for mesh in meshes], (3,), np.float32)
     return Library(
-        _joined([mesh.vertices for mesh in meshes], (3,), np.float32),
+        vertices,
         _joined(triangles, (3,), np.int32),
         _joined([mesh.normals for mesh in meshes], (3, 3), np.float32),
         _joined([mesh.uvs for mesh in meshes], (3, 2), np.float32),
@@ -55,7 +56,7 @@ def pack(models: Sequence[Model]) -> Library:
         _joined([mesh.materials for mesh in meshes], (), np.uint8),
         np.ascontiguousarray(levels),
         np.stack([np.cumsum(counts, dtype=np.int32) - counts, counts], axis=1).reshape(-1, 2).astype(np.int32),
-        np.array([_box(levels) for levels in kept], np.float64).reshape(-1, 2, 3),
+        _boxes(vertices, sizes[:, 0], counts),
     )
 
 
@@ -72,8 +73,13 @@ def _joined(parts: Sequence[NDArray[Any]], tail: tuple[int, ...], dtype: type[T]
     return np.ascontiguousarray(np.concatenate(parts).reshape(-1, *tail), dtype)
 
 
-def _box(levels: Sequence[Mesh]) -> NDArray[np.float64]:
-    if not levels:
-        return np.zeros((2, 3))
-    points = np.concatenate([level.vertices for level in levels])
-    return np.stack([points.min(axis=0), points.max(axis=0)]).astype(np.float64)
+def _boxes(vertices: NDArray[np.float32], sizes: NDArray[np.int64], counts: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Return the least and greatest corner of each prototype; zeros for one without levels."""
+    ends = np.append(0, np.cumsum(sizes))[np.append(0, np.cumsum(counts))]
+    found = np.zeros((len(counts), 2, 3))
+    filled = np.flatnonzero(ends[1:] > ends[:-1])
+    if len(filled):
+        # What lies between two filled ones is empty.
+        found[filled, 0] = np.minimum.reduceat(vertices, ends[filled], axis=0)
+        found[filled, 1] = np.maximum.reduceat(vertices, ends[filled], axis=0)
+    return found

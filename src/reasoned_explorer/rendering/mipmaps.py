@@ -7,6 +7,7 @@ from reasoned_explorer.rendering.ground import GroundMap
 from reasoned_explorer.rendering.library import Library, linear_from_srgb
 from reasoned_explorer.rendering.scene import Instances
 from reasoned_explorer.rendering.shading_kernels import GroundLooks, Surfaces, Textures
+from reasoned_explorer.rendering.shelf import Arrays, kept_arrays
 from reasoned_explorer.rendering.textures import TEXTURE_METRES, texture_stack
 
 _FIRST_BLOCK = 4
@@ -36,7 +37,13 @@ def textures_of(stack: NDArray[np.float32], metres: NDArray[np.float32]) -> Text
 
 def material_textures() -> Textures:
     """Return the textures of all materials."""
-    return textures_of(texture_stack(), TEXTURE_METRES)
+
+    def made() -> Arrays:
+        textures = textures_of(texture_stack(), TEXTURE_METRES)
+        return textures.texels, textures.starts, np.array(textures.side), textures.per_metre
+
+    texels, starts, side, per_metre = kept_arrays("textures", made)
+    return Textures(texels, starts, int(side), per_metre)
 
 
 def ground_looks_of(ground: GroundMap, textures: Textures) -> GroundLooks:

@@ -14,10 +14,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from reasoned_explorer.rendering.compiling import kernel, part
 from reasoned_explorer.rendering.library import Library
 from reasoned_explorer.rendering.projection import NEAR_M, Projection
 from reasoned_explorer.rendering.scene import Cells, Instances
+from reasoned_explorer.world.compiling import kernel, part
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -244,8 +244,8 @@ def _narrow(slope: float, rest: float, low: float, high: float) -> tuple[float, 
     return low, high
 
 
-@kernel
-def fill_triangle(
+@part
+def _fill_triangle(
     corners: Floats,
     a: int,
     b: int,
@@ -256,22 +256,7 @@ def fill_triangle(
     owners: Ints,
     triangles: Ints,
 ) -> None:
-    """Keep a triangle wherever it is nearest and faces the eye.
-
-    Triangles that share an edge cover every sample along it exactly once. Around a corner that hits the middle of a
-    sample to the last digit, rounding decides: the sample may be left out, or covered twice.
-
-    Args:
-        corners: As in `Scratch`.
-        a: Its first corner; counter-clockwise seen from outside.
-        b: Its second.
-        c: Its third.
-        owner: What is kept in ``owners``.
-        triangle: What is kept in ``triangles``.
-        nearness: As in `Canvas`.
-        owners: Likewise.
-        triangles: Likewise.
-    """
+    """See `fill_triangle`."""
     height, width = nearness.shape
     za, zb, zc = corners[a, 2], corners[b, 2], corners[c, 2]
     if za > NEAR_M and zb > NEAR_M and zc > NEAR_M:
@@ -330,6 +315,37 @@ def fill_triangle(
                 triangles[y, x] = triangle
 
 
+@kernel
+def fill_triangle(
+    corners: Floats,
+    a: int,
+    b: int,
+    c: int,
+    owner: int,
+    triangle: int,
+    nearness: NDArray[np.float32],
+    owners: Ints,
+    triangles: Ints,
+) -> None:
+    """Keep a triangle wherever it is nearest and faces the eye.
+
+    Triangles that share an edge cover every sample along it exactly once. Around a corner that hits the middle of a
+    sample to the last digit, rounding decides: the sample may be left out, or covered twice.
+
+    Args:
+        corners: As in `Scratch`.
+        a: Its first corner; counter-clockwise seen from outside.
+        b: Its second.
+        c: Its third.
+        owner: What is kept in ``owners``.
+        triangle: What is kept in ``triangles``.
+        nearness: As in `Canvas`.
+        owners: Likewise.
+        triangles: Likewise.
+    """
+    _fill_triangle(corners, a, b, c, owner, triangle, nearness, owners, triangles)
+
+
 @part
 def _draw_level(library: Library, level: int, matrix: Floats, owner: int, canvas: Canvas, corners: Floats) -> None:
     vertices, places, levels = library.vertices, library.triangles, library.levels
@@ -345,7 +361,7 @@ def _draw_level(library: Library, level: int, matrix: Floats, owner: int, canvas
         corners[k, 3], corners[k, 4] = x * inverse, y * inverse
     for t in range(levels[level, 2], levels[level, 2] + levels[level, 3]):
         a, b, c = places[t, 0] - first, places[t, 1] - first, places[t, 2] - first
-        fill_triangle(corners, a, b, c, owner, t, nearness, owners, triangles)
+        _fill_triangle(corners, a, b, c, owner, t, nearness, owners, triangles)
 
 
 @part

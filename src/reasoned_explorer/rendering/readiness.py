@@ -2,7 +2,8 @@
 
 numba compiles a kernel when it is first called, one at a time, and keeps it on disk. For all kernels of the renderer
 that takes about as long as a person waits for anything. So, the first time, helpers (processes of their own) compile
-a share each while the scene is made, and this process reads from disk what they leave there.
+while the scene is made, one part after the other; then this process takes what is left from the other end, and reads
+from disk what they have left there.
 """
 
 import hashlib
@@ -11,28 +12,30 @@ import queue
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
+from typing import IO
 
 import numba
-from numba.core.registry import cpu_target
+import numba.core.event
 
 from reasoned_explorer.model.stopping import stop_if_asked
-from reasoned_explorer.rendering.compiling import cache_folder
+from reasoned_explorer.rendering.cache import cache_folder, processor
 
 #: Told, now and then, what takes long.
 Progress = Callable[[str], None]
-#: What can be compiled by itself; one helper's share after the other, about equally much in each.
-SHARES: tuple[tuple[str, ...], ...] = (("shading",), ("raster", "shadows"))
+#: What can be compiled by itself; what takes longest first.
+PARTS: tuple[str, ...] = ("shading", "raster", "shadows")
 #: Roughly how many functions there are; only for people who wait.
-FUNCTIONS = 66
+FUNCTIONS = 56
 _FIRST_TIME = "compiling the renderer, the first time only"
 
 
 def is_ready() -> bool:
     """Return whether the renderer's code is compiled already, for this machine and as it is now."""
-    return all(is_kept(part) for share in SHARES for part in share)
+    return all(is_kept(part) for part in PARTS)
 
 
 def begin() -> None:
@@ -62,7 +65,7 @@ def is_kept(part: str) -> bool:
         return True
     try:
         return _note_of(folder, part).read_text(encoding="utf-8") == _fingerprint()
-    except OSError:
+    except (OSError, UnicodeDecodeError):
         return False
 
 
@@ -76,80 +79,191 @@ def keep(part: str) -> None:
             beside.write_text(_fingerprint(), encoding="utf-8")
             beside.replace(note)
         except OSError:
-            beside.unlink(missing_ok=True)
+            with suppress(OSError):
+                beside.unlink(missing_ok=True)
 
 
-class _Work:
-    """What this process has done about it."""
+def compile_missing(parts: Iterable[str], compile_part: Callable[[str], None]) -> list[str]:
+    """Compile those parts that are neither kept yet nor what another process is at.
 
-    def __init__(self) -> None:
+    Args:
+        parts: Which, in this order.
+        compile_part: Does it.
+
+    Returns:
+        What was compiled here.
+    """
+    done = []
+    for part in parts:
+        if not is_kept(part):
+            with _alone(part) as is_free:
+                if is_free and not is_kept(part):
+                    compile_part(part)
+                    keep(part)
+                    done.append(part)
+    return done
+
+
+@contextmanager
+def telling(on_function: Callable[[str], None]) -> Iterator[None]:
+    """Have something told the name of each function that numba has compiled within a ``with`` block."""
+    teller = _Teller(on_function)
+    numba.core.event.register("numba:compile", teller)
+    try:
+        yield
+    finally:
+        numba.core.event.unregister("numba:compile", teller)
+
+
+class Work:
+    """What one process does about it, once.
+
+    Args:
+        parts: What there is to compile.
+        compile_part: Compiles a part in this process.
+        command_for: The command line of a helper that compiles parts, and says a line for each function.
+        helpers: How many there may be.
+
+    Attributes:
+        lock: To be held while anything is called.
+    """
+
+    def __init__(
+        self,
+        parts: Sequence[str],
+        compile_part: Callable[[str], None],
+        command_for: Callable[[Sequence[str]], Sequence[str]],
+        helpers: int,
+    ) -> None:
         self.lock = threading.Lock()
-        self._helpers: list[_Helper] = []
-        self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
+        self._parts, self._compile_part, self._command_for = parts, compile_part, command_for
+        self._most = helpers
+        self._lines: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._is_begun = self._is_done = False
+        self._functions = 0
+        self._told = ""
 
     def begin(self) -> None:
+        """Start helpers for what is missing, unless that was done before."""
         if self._is_begun:
             return
         self._is_begun = True
-        if sys.executable and _cores() > 1:
-            missing = [tuple(part for part in share if not is_kept(part)) for share in SHARES]
-            self._helpers = [_Helper(share, self._lines) for share in missing if share]
+        missing = [part for part in self._parts if not is_kept(part)]
+        for place in range(min(self._most, len(missing))):
+            hand_on_lines(self._command_for([*missing[place:], *missing[:place]]), self._lines.put)
 
     def finish(self, on_progress: Progress) -> None:
+        """Return when everything is compiled; what no helper is at is compiled here, from the other end."""
         if self._is_done:
             return
-        ended = functions = 0
-        while ended < len(self._helpers):
-            stop_if_asked()
-            try:
-                line = self._lines.get(timeout=0.1)
-            except queue.Empty:
-                continue
-            ended += line is None
-            functions += line is not None
-            on_progress(f"{_FIRST_TIME}: about {min(99, 100 * functions // FUNCTIONS)} %")
-        # What no helper could compile, or what is kept no longer.
-        for part in (part for share in SHARES for part in share):
-            if not is_kept(part):
-                from reasoned_explorer.rendering.compilation import compile_part
 
-                on_progress(f"{_FIRST_TIME}: {part}")
-                compile_part(part)
-                keep(part)
-                stop_if_asked()
+        def one_more(_: str) -> None:
+            self._functions += 1
+            self._listen(on_progress)
+
+        left = self._parts[::-1]
+        with telling(one_more):
+            while left := [part for part in left if not is_kept(part)]:
+                done = compile_missing(left, self._compile_part)
+                left = [part for part in left if part not in done]
+                if not done:
+                    self._listen(on_progress, wait_s=0.1)
         self._is_done = True
 
+    def _listen(self, on_progress: Progress, wait_s: float = 0.0) -> None:
+        """Take in what helpers have said, tell how far all is, and stop here if a person asked for it."""
+        with suppress(queue.Empty):
+            while True:
+                self._lines.get(timeout=wait_s) if wait_s else self._lines.get_nowait()
+                self._functions += 1
+        told = f"{_FIRST_TIME}: about {min(90, 100 * self._functions // FUNCTIONS // 10 * 10)} %"
+        if told != self._told:
+            self._told = told
+            on_progress(told)
+        stop_if_asked()
 
-class _Helper:
-    """A process that compiles parts and says a line for each function; a thread hands them on, and None at the end."""
 
-    def __init__(self, parts: Sequence[str], lines: "queue.SimpleQueue[str | None]") -> None:
-        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
-        command = [sys.executable, "-m", "reasoned_explorer.rendering.compilation", *parts]
-        self._lines = lines
-        try:
-            self._process = subprocess.Popen(  # noqa: S603 - this very interpreter, with names of our own
-                command,
-                env=environment,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL,
-                text=True,
-            )
-        except OSError:
-            lines.put(None)
-            return
-        threading.Thread(target=self._hand_on, daemon=True).start()
+def hand_on_lines(command: Sequence[str], hand_on: Callable[[str], None]) -> threading.Thread | None:
+    """Start a process with the modules of this one, and a thread that hands on what it says.
 
-    def _hand_on(self) -> None:
-        with self._process as process:
+    Args:
+        command: Its command line.
+        hand_on: Called with each line.
+
+    Returns:
+        The thread, which ends with the process; None where the process cannot be started.
+    """
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    try:
+        process = subprocess.Popen(  # noqa: S603 - this very interpreter, with names of our own
+            command,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+        )
+    except OSError:
+        return None
+
+    def listen() -> None:
+        with process:
             for line in process.stdout or ():
-                self._lines.put(line.strip())
-        self._lines.put(None)
+                hand_on(line.strip())
+
+    thread = threading.Thread(target=listen, daemon=True)
+    thread.start()
+    return thread
 
 
-_work = _Work()
+class _Teller(numba.core.event.Listener):  # type: ignore[misc]
+    def __init__(self, on_function: Callable[[str], None]) -> None:
+        self._on_function = on_function
+
+    def on_start(self, event: numba.core.event.Event) -> None:
+        pass
+
+    def on_end(self, event: numba.core.event.Event) -> None:
+        self._on_function(event.data["dispatcher"].py_func.__name__)
+
+
+@contextmanager
+def _alone(part: str) -> Iterator[bool]:
+    """Yield whether no other process is at a part, which is then this one's. Where that cannot be known, none is."""
+    folder = cache_folder()
+    try:
+        import fcntl
+    except ImportError:
+        folder = None
+    lock = None if folder is None else _opened(folder / f"renderer-{part}.lock")
+    if lock is None:
+        yield True
+        return
+    with lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            yield False
+            return
+        yield True
+
+
+def _opened(path: Path) -> IO[str] | None:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        return path.open("w", encoding="utf-8")
+    except OSError:
+        return None
+
+
+def _compile(part: str) -> None:
+    from reasoned_explorer.rendering.compilation import compile_part
+
+    compile_part(part)
+
+
+def _command_for(parts: Sequence[str]) -> list[str]:
+    return [sys.executable, "-m", "reasoned_explorer.rendering.compilation", *parts]
 
 
 def _nobody(_: str) -> None:
@@ -164,8 +278,7 @@ def _note_of(folder: Path, part: str) -> Path:
 def _fingerprint() -> str:
     """Of all that decides whether numba can use again what it keeps: itself, the processor, the sources."""
     found = hashlib.sha256()
-    processor = cpu_target.target_context.codegen().magic_tuple()
-    found.update(f"{sys.version}\n{numba.__version__}\n{processor}\n".encode())
+    found.update(f"{sys.version}\n{numba.__version__}\n{processor()}\n".encode())
     for source in sorted(Path(__file__).parent.glob("*.py")):
         state = source.stat()
         found.update(f"{source.name} {state.st_size} {state.st_mtime_ns}\n".encode())
@@ -175,3 +288,7 @@ def _fingerprint() -> str:
 def _cores() -> int:
     """How many processors this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+#: This process compiles, too.
+_work = Work(PARTS, _compile, _command_for, min(_cores(), len(PARTS)) - 1 if sys.executable else 0)

@@ -21,6 +21,8 @@ from reasoned_explorer.rendering.shadows import ShadowTiles
 
 #: Triangles for each pixel that a thing may fill, at most, where its model has coarser levels.
 DENSITY = 1.5
+#: A scene's first picture is looked at in so many pixels apart before it is drawn.
+_QUICK_STEP = 8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -118,6 +120,8 @@ class Renderer:
     def _shaded(self, view: Projection, canvas: Canvas, camera: Camera) -> NDArray[np.uint8]:
         colour = np.empty((camera.height_px, camera.width_px, 3), np.uint8)
         wanted = self._room().wanted
+        # Where there is no tile yet, nearly all that are needed are found out with few pixels.
+        step = 1 if self._shadows.are_begun else _QUICK_STEP
         while True:
             wanted[:] = 0
             with self._shadows.shading():
@@ -132,10 +136,12 @@ class Renderer:
                     self._curve,
                     wanted,
                     *self._room().samples,
+                    step,
                     colour,
                 )
-            if done:
+            if done and step == 1:
                 return colour
+            step = 1
             self._shadows.make(wanted)
 
     def _room(self) -> Room:

@@ -2,21 +2,20 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from reasoned_explorer.rendering.buildings import models_of_buildings
-from reasoned_explorer.rendering.fronts import fronts_of, walls_taken
 from reasoned_explorer.rendering.ground import GroundMap, ground_of
 from reasoned_explorer.rendering.library import Library, linear_from_srgb, pack
 from reasoned_explorer.rendering.mesh import Model
 from reasoned_explorer.rendering.readiness import Progress, begin
-from reasoned_explorer.rendering.standing import stands_of
-from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.taxonomy import CLASS_NAMES
 from reasoned_explorer.world.world import World
+
+if TYPE_CHECKING:
+    from reasoned_explorer.world.atlas import Atlas
 
 #: Instance ids of what is no object: sky, ground, and the first building.
 SKY_ID, GROUND_ID, FIRST_BUILDING_ID = 0, 1, 2
@@ -102,7 +101,7 @@ class Scene:
     classes: NDArray[np.uint8]
 
     @classmethod
-    def of(cls, world: World | Atlas, *, seed: int | None = None, on_progress: Progress | None = None) -> "Scene":
+    def of(cls, world: "World | Atlas", *, seed: int | None = None, on_progress: Progress | None = None) -> "Scene":
         """Return the scene of a world. If need be, the renderer's kernels are compiled meanwhile.
 
         Args:
@@ -111,9 +110,14 @@ class Scene:
             on_progress: Told what takes long.
         """
         begin()
+        # Whoever compiles has no need of them.
+        from reasoned_explorer.rendering.buildings import models_of_buildings
+        from reasoned_explorer.rendering.fronts import fronts_of, walls_taken
+        from reasoned_explorer.rendering.standing import stands_of
+
         tell = on_progress or (lambda _: None)
         tell("the ground")
-        plain = world.world if isinstance(world, Atlas) else world
+        plain = world if isinstance(world, World) else world.world
         looks = plain.seed if seed is None else seed
         first_object = FIRST_BUILDING_ID + len(plain.buildings)
         ground = ground_of(plain)

@@ -9,11 +9,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from reasoned_explorer.rendering.compiling import inlined, kernel, part
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.projection import Projection
 from reasoned_explorer.rendering.raster_kernels import GROUND, SKY, Canvas
 from reasoned_explorer.rendering.shadow_kernels import ShadowMaps, sunlight_at
+from reasoned_explorer.world.compiling import inlined, kernel, part
 
 Rgb = tuple[float, float, float]
 Codes = NDArray[np.uint8]
@@ -514,11 +514,13 @@ def shade(
     wanted: NDArray[np.uint8],
     owners: NDArray[np.int32],
     triangles: NDArray[np.int32],
+    step: int,
     picture: NDArray[np.uint8],
 ) -> bool:
     """Set the picture, shape (height, width, 3); return whether all shadow tiles that it needs were there.
 
-    The samples of a pixel that show the same triangle are shaded together, in their middle.
+    The samples of a pixel that show the same triangle are shaded together, in their middle. With a ``step`` above 1
+    only every so many columns of every so many rows are set: a quick look at which tiles will be needed.
     """
     faces, stands = surfaces.faces, surfaces.stands
     codes, corner, materials, colours = looks.codes, looks.corner, looks.materials, looks.colours
@@ -537,8 +539,8 @@ def shade(
     scale = (curve.shape[0] - 1) / (4.0 * count)
     per_focal = 1.0 / focal
     last = curve.shape[0] - 1
-    for y in range(picture.shape[0]):
-        for x in range(picture.shape[1]):
+    for y in range(0, picture.shape[0], step):
+        for x in range(0, picture.shape[1], step):
             for k in range(count):
                 row, column = y * samples + (k >> 1), x * samples + (k & 1)
                 owners[k], triangles[k] = seen_owners[row, column], seen_triangles[row, column]

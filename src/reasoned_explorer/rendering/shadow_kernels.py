@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from reasoned_explorer.rendering.compiling import inlined, kernel
 from reasoned_explorer.rendering.library import Library
 from reasoned_explorer.rendering.scene import Instances
+from reasoned_explorer.world.compiling import inlined, kernel
 
 #: Texels along the side of a tile; around them `MARGIN` more, so that a look-up needs no second tile.
 _SHIFT = 8

@@ -44,6 +44,11 @@ class ShadowTiles:
         """Length of the array in which the shader notes what it misses."""
         return 1 + self._fine.table.size + self._coarse.table.size
 
+    @property
+    def are_begun(self) -> bool:
+        """Whether there is a tile."""
+        return self._fine.free < len(self._fine.tiles) or self._coarse.free < len(self._coarse.tiles)
+
     def shading(self) -> AbstractContextManager[None]:
         """Return a context in which no tile is thrown away."""
         return self._gate.shared()

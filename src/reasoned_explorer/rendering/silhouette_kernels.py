@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from reasoned_explorer.rendering.compiling import kernel
 from reasoned_explorer.rendering.library import Library
 from reasoned_explorer.rendering.projection import Projection
 from reasoned_explorer.rendering.raster_kernels import Canvas, _bound, _distance, _draw_level, _level_of, _matrix_of
 from reasoned_explorer.rendering.scene import Instances
+from reasoned_explorer.world.compiling import kernel
 
 
 class Sheet(NamedTuple):

@@ -5,7 +5,7 @@ line of bollards is many bollards, a playground is what there is room for betwee
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -93,15 +93,17 @@ def _scale(model: Model, item: WorldObject) -> tuple[float, float, float]:
         size_m = (min(size_m[:2]), max(size_m[:2]), size_m[2])
 
     def ratio(axis: int) -> float:
-        natural = model.size_m[axis]
-        wanted = size_m[axis] / natural if natural > 0.0 and size_m[axis] > 0.0 else 1.0
-        return min(max(wanted, 1.0 / _MOST_SCALE), _MOST_SCALE)
+        natural, wanted = model.size_m[axis], size_m[axis]
+        if natural <= 0.0 or wanted <= 0.0:
+            return 1.0
+        return min(max(wanted / natural, 1.0 / _MOST_SCALE), _MOST_SCALE)
 
-    scalings: Mapping[str, Callable[[], tuple[float, float, float]]] = {
-        "axes": lambda: (ratio(0), ratio(1), ratio(2)),
-        "uniform": lambda: (ratio(2), ratio(2), ratio(2)),
-    }
-    return scalings.get(model.scaling, lambda: (1.0, 1.0, 1.0))()
+    if model.scaling == "axes":
+        return (ratio(0), ratio(1), ratio(2))
+    if model.scaling == "uniform":
+        by_height = ratio(2)
+        return (by_height, by_height, by_height)
+    return (1.0, 1.0, 1.0)
 
 
 def _row(item: WorldObject, model: Model, scale: tuple[float, float, float], tint: Rgb) -> Iterator[Stand]:

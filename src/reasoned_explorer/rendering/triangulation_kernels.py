@@ -8,7 +8,7 @@ simple polygon has two ears, and that a hole's rightmost corner sees a corner to
 import numpy as np
 from numpy.typing import NDArray
 
-from reasoned_explorer.rendering.compiling import kernel, part
+from reasoned_explorer.world.compiling import kernel, part
 
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]

@@ -12,12 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from reasoned_explorer.rendering.compiling import kernel, part
 from reasoned_explorer.rendering.library import Library
 from reasoned_explorer.rendering.projection import Projection
 from reasoned_explorer.rendering.scene import Instances
 from reasoned_explorer.rendering.silhouette_kernels import Sheet, draw_on_sheet, farthest_on_sheet, place_on_sheet
 from reasoned_explorer.simulation.eyes_kernels import GROUND_AHEAD_M, GROUND_BEARINGS, WALL_RAYS
+from reasoned_explorer.world.compiling import kernel, part
 from reasoned_explorer.world.sight_kernels import AREA, BUILDING, FIRST, LAST, OBJECT, SHAPE, FloatArray, Targets
 
 _GROUND_ID = 1

@@ -9,13 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reasoned_explorer.model import Fault, WorldError
-from reasoned_explorer.world.raster_kernels import codes_at, fill_polygons, paint_lines
+from reasoned_explorer.world.raster_kernels import fill_polygons, paint_lines
 from reasoned_explorer.world.taxonomy import Ground
 from reasoned_explorer.world.world import Bounds, Ring, World
 
 #: A building whose underside is higher than this is a roof that one can go under, metres.
 ROOF_CLEARANCE_M = 2.0
 _MAX_CELLS = 200_000_000
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,14 +87,17 @@ class GroundRaster:
         Returns:
             Values of `Ground`, the same shape; ``UNKNOWN`` outside the world's bounds.
         """
-        xs, ys = np.asarray(xs_m, dtype=np.float64), np.asarray(ys_m, dtype=np.float64)
-        found = codes_at(
-            self.codes, (xs.ravel() - self.min_x_m) / self.cell_m, (ys.ravel() - self.min_y_m) / self.cell_m
-        )
-        beyond = (xs.ravel() > self.bounds.max_x_m) | (ys.ravel() > self.bounds.max_y_m)
-        found[beyond] = Ground.UNKNOWN
-        shaped: NDArray[np.uint8] = found.reshape(xs.shape)
-        return shaped
+        x, y = np.asarray(xs_m, dtype=np.float64), np.asarray(ys_m, dtype=np.float64)
+        rows, columns = self.codes.shape
+        across, up = (x - self.min_x_m) / self.cell_m, (y - self.min_y_m) / self.cell_m
+        within = (across >= 0.0) & (across <= columns) & (x <= self.bounds.max_x_m)
+        within &= (up >= 0.0) & (up <= rows) & (y <= self.bounds.max_y_m)
+        # The outer border belongs to the grid.
+        row = np.minimum(up[within].astype(np.int64), rows - 1)
+        column = np.minimum(across[within].astype(np.int64), columns - 1)
+        found = np.full(x.shape, Ground.UNKNOWN, np.uint8)
+        found[within] = self.codes[row, column]
+        return found
 
     def share(self, ground: Ground) -> float:
         """Return the share of all cells that are this ground, in [0, 1]."""
@@ -140,8 +145,11 @@ class Canvas:
             rings.extend(polygon)
             polygon_ends.append(len(rings))
         if rings:
-            ends = np.asarray(polygon_ends, dtype=np.int64)
-            fill_polygons(self.codes, self._cells(rings), _ends(rings), ends, _values(values, len(polygon_ends)))
+            points, ring_ends, ends = self._cells(rings), _ends(rings), np.asarray(polygon_ends, dtype=np.int64)
+            rows = len(self.codes)
+            room = np.empty(_most_crossings(points, ring_ends, ends, rows))
+            counts = np.zeros(rows, np.int64)
+            fill_polygons(self.codes, points, ring_ends, ends, _values(values, len(ends)), counts, room)
 
     def draw(self, lines: Sequence[Ring], radii_m: Sequence[float], values: Sequence[int] | int) -> None:
         """Draw lines in order, each with its half width, with round ends and joins."""
@@ -156,6 +164,17 @@ class Canvas:
     def _cells(self, rings: Sequence[Ring]) -> NDArray[np.float64]:
         points = np.concatenate(rings).astype(np.float64, copy=False)
         return np.ascontiguousarray((points - (self.min_x_m, self.min_y_m)) / self.cell_m)
+
+
+def _most_crossings(points: Floats, ring_ends: Ints, polygon_ends: Ints, rows: int) -> int:
+    """Return how often the edges of a polygon cross the middles of rows, at most."""
+    row = np.clip(np.ceil(points[:, 1] - 0.5), 0.0, rows)
+    before = np.arange(len(points)) - 1
+    begins = np.append(0, ring_ends[:-1])
+    before[begins[begins < ring_ends]] = ring_ends[begins < ring_ends] - 1
+    so_far = np.append(0.0, np.cumsum(np.abs(row - row[before])))
+    ends = np.append(0, ring_ends)[np.append(0, polygon_ends)]
+    return int(np.diff(so_far[ends]).max(initial=0.0))
 
 
 def _ends(rings: Sequence[Ring]) -> NDArray[np.int64]:

@@ -8,21 +8,22 @@ one paints a centre on it.
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from reasoned_explorer.world.compiling import kernel, part
 
 Codes = NDArray[np.uint8]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-@njit(cache=True)
+@part
 def _first_index(position: float) -> int:
     """Return the index of the first cell whose centre is at or beyond a position."""
     return math.ceil(position - 0.5)
 
 
-@njit(cache=True)
+@part
 def _rows_of_edge(points: Floats, a: int, b: int, rows: int) -> tuple[int, int]:
     """Return the half-open range of rows whose centre lines an edge crosses."""
     low = min(points[a, 1], points[b, 1])
@@ -30,7 +31,7 @@ def _rows_of_edge(points: Floats, a: int, b: int, rows: int) -> tuple[int, int]:
     return max(0, _first_index(low)), min(rows, _first_index(high))
 
 
-@njit(cache=True)
+@part
 def _count_crossings(points: Floats, start: int, end: int, counts: Ints) -> None:
     previous = end - 1
     for k in range(start, end):
@@ -40,7 +41,7 @@ def _count_crossings(points: Floats, start: int, end: int, counts: Ints) -> None
         previous = k
 
 
-@njit(cache=True)
+@part
 def _collect_crossings(points: Floats, start: int, end: int, slots: Ints, crossings: Floats) -> None:
     previous = end - 1
     for k in range(start, end):
@@ -53,25 +54,27 @@ def _collect_crossings(points: Floats, start: int, end: int, slots: Ints, crossi
         previous = k
 
 
-@njit(cache=True)
-def _paint_row(codes: Codes, row: int, crossings: Floats, value: int) -> None:
-    """Paint between every odd crossing and the next one; the crossings are sorted on the way."""
-    for i in range(1, crossings.size):
+@part
+def _paint_row(codes: Codes, row: int, crossings: Floats, begin: int, end: int, value: int) -> None:
+    """Paint between every odd one of a row's crossings and the next one; they are sorted on the way."""
+    for i in range(begin + 1, end):
         x = crossings[i]
         j = i - 1
-        while j >= 0 and crossings[j] > x:
+        while j >= begin and crossings[j] > x:
             crossings[j + 1] = crossings[j]
             j -= 1
         crossings[j + 1] = x
-    for i in range(0, crossings.size - 1, 2):
+    for i in range(begin, end - 1, 2):
         first = max(0, _first_index(crossings[i]))
         beyond = min(codes.shape[1], _first_index(crossings[i + 1]))
         for col in range(first, beyond):
             codes[row, col] = value
 
 
-@njit(cache=True)
-def fill_polygons(codes: Codes, points: Floats, ring_ends: Ints, polygon_ends: Ints, values: Codes) -> None:
+@kernel
+def fill_polygons(
+    codes: Codes, points: Floats, ring_ends: Ints, polygon_ends: Ints, values: Codes, counts: Ints, crossings: Floats
+) -> None:
     """Fill polygons one after the other, even-odd over all rings of each.
 
     Args:
@@ -80,10 +83,10 @@ def fill_polygons(codes: Codes, points: Floats, ring_ends: Ints, polygon_ends: I
         ring_ends: Where in ``points`` each ring ends.
         polygon_ends: Where in ``ring_ends`` each polygon ends.
         values: What each polygon paints.
+        counts: Room, zeros, shape (rows,).
+        crossings: Room for all crossings of a polygon's edges with the middles of rows.
     """
     rows = codes.shape[0]
-    counts = np.zeros(rows, np.int64)
-    crossings = np.empty(1024, np.float64)
     first_ring = 0
     for polygon in range(polygon_ends.size):
         start = 0 if first_ring == 0 else ring_ends[first_ring - 1]
@@ -101,21 +104,19 @@ def fill_polygons(codes: Codes, points: Floats, ring_ends: Ints, polygon_ends: I
                 count = counts[row]
                 counts[row] = total
                 total += count
-            if total > crossings.size:
-                crossings = np.empty(2 * total, np.float64)
             begin = start
             for ring in range(first_ring, polygon_ends[polygon]):
                 _collect_crossings(points, begin, ring_ends[ring], counts, crossings)
                 begin = ring_ends[ring]
             begin = 0
             for row in range(first, beyond):
-                _paint_row(codes, row, crossings[begin : counts[row]], values[polygon])
+                _paint_row(codes, row, crossings, begin, counts[row], values[polygon])
                 begin = counts[row]
                 counts[row] = 0
         first_ring = polygon_ends[polygon]
 
 
-@njit(cache=True)
+@part
 def _disc_span(x: float, y: float, radius: float, line_y: float) -> tuple[float, float]:
     rest = radius * radius - (line_y - y) * (line_y - y)
     if rest < 0.0:
@@ -124,7 +125,7 @@ def _disc_span(x: float, y: float, radius: float, line_y: float) -> tuple[float,
     return x - half, x + half
 
 
-@njit(cache=True)
+@part
 def _strip_span(factor: float, offset: float, low: float, high: float) -> tuple[float, float]:
     """Return the interval of t in which low ≤ factor·t + offset ≤ high."""
     if abs(factor) < 1e-12:
@@ -135,7 +136,7 @@ def _strip_span(factor: float, offset: float, low: float, high: float) -> tuple[
     return min(a, b), max(a, b)
 
 
-@njit(cache=True)
+@part
 def _paint_capsule(codes: Codes, ax: float, ay: float, bx: float, by: float, radius: float, value: int) -> None:
     length = math.hypot(bx - ax, by - ay)
     ux, uy = (0.0, 0.0) if length == 0.0 else ((bx - ax) / length, (by - ay) / length)
@@ -158,7 +159,7 @@ def _paint_capsule(codes: Codes, ax: float, ay: float, bx: float, by: float, rad
                 codes[row, col] = value
 
 
-@njit(cache=True)
+@kernel
 def paint_lines(codes: Codes, points: Floats, line_ends: Ints, radii: Floats, values: Codes) -> None:
     """Paint lines of a width one after the other, with round ends and joins.
 
@@ -176,15 +177,3 @@ def paint_lines(codes: Codes, points: Floats, line_ends: Ints, radii: Floats, va
                 codes, points[k, 0], points[k, 1], points[k + 1, 0], points[k + 1, 1], radii[line], values[line]
             )
         start = line_ends[line]
-
-
-@njit(cache=True)
-def codes_at(codes: Codes, xs: Floats, ys: Floats) -> Codes:
-    """Return the code at each point; 0 outside the grid. The grid's outer border belongs to it."""
-    rows, cols = codes.shape
-    found = np.zeros(xs.size, np.uint8)
-    for i in range(xs.size):
-        x, y = xs[i], ys[i]
-        if 0.0 <= x <= cols and 0.0 <= y <= rows:
-            found[i] = codes[min(int(y), rows - 1), min(int(x), cols - 1)]
-    return found

@@ -22,6 +22,7 @@ from reasoned_explorer.rendering.models import (
     waterworks,
 )
 from reasoned_explorer.rendering.models.maker import Maker
+from reasoned_explorer.rendering.shelf import kept_model
 from reasoned_explorer.world.taxonomy import OBJECT_CLASSES
 
 _MAKERS: dict[str, Maker] = {
@@ -81,7 +82,9 @@ def tints_of(class_name: str) -> tuple[Colour, ...]:
 
 @lru_cache(maxsize=1024)
 def _made(class_name: str, variant: int) -> Model:
-    return _maker(class_name).model(variant, natural_size_m(class_name))
+    return kept_model(
+        f"model-{class_name}-{variant}", lambda: _maker(class_name).model(variant, natural_size_m(class_name))
+    )
 
 
 def _maker(class_name: str) -> Maker:

@@ -24,6 +24,7 @@ from reasoned_explorer.rendering.models.palette import (
     STEEL,
     plain,
 )
+from reasoned_explorer.rendering.shelf import kept_model
 
 _SAND = Surface(Material.SAND, (0.86, 0.76, 0.55))
 _TOY_GREEN = plain(0.20, 0.62, 0.25)
@@ -352,7 +353,8 @@ def _piece(make: Callable[[MeshBuilder, int], None], variant: int, middle: tuple
         builder.add(own, (-middle[0], -middle[1], 0.0))
 
     whole = Maker(moved, variants=2, fits="none", scaling="none")
-    return whole.model(variant, (1.0, 1.0, 1.0))
+    name = f"piece-{make.__name__}-{variant % whole.variants}-{middle[0]:g}-{middle[1]:g}"
+    return kept_model(name, lambda: whole.model(variant, (1.0, 1.0, 1.0)))
 
 
 MAKERS = {

@@ -21,6 +21,7 @@ from reasoned_explorer.rendering.models.palette import (
     WATER,
     plain,
 )
+from reasoned_explorer.rendering.shelf import kept_model
 
 _RED = plain(0.83, 0.08, 0.07)
 _YELLOW = plain(0.97, 0.76, 0.08)
@@ -178,7 +179,8 @@ def hydrant_lid() -> Model:
             flat = Plane((0.0, 0.0, 0.046), (-1.0, 0.0, 0.0), (0.0, -1.0, 0.0))
             write(builder, _YELLOW, "H", flat, centre=(0.0, 0.0), height_m=0.2)
 
-    return Maker(make, scaling="none", fits="none").model(0, (0.7, 0.6, 0.05))
+    lid = Maker(make, scaling="none", fits="none")
+    return kept_model("hydrant-lid", lambda: lid.model(0, (0.7, 0.6, 0.05)))
 
 
 MAKERS = {
