@@ -7,10 +7,14 @@ def main() -> None:
     0: done (for a mission: found), 1: the mission ended without, 2: bad input, 3: a part failed, 130: stopped by a
     person.
     """
+    import gc
+
     from reasoned_explorer.model.stopping import end_listening, listen
 
     # From the very beginning: loading the commands takes a moment, too.
     listen()
+    # What is loaded stays: looking for garbage in it costs a twentieth of the start.
+    gc.set_threshold(50_000, 50, 1_000)
     from reasoned_explorer.cli.app import app
 
     try:
