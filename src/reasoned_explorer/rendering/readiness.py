@@ -27,7 +27,7 @@ from reasoned_explorer.rendering.cache import cache_folder, processor
 #: Told, now and then, what takes long.
 Progress = Callable[[str], None]
 #: What can be compiled by itself; what takes longest first.
-PARTS: tuple[str, ...] = ("shading", "raster", "shadows")
+PARTS: tuple[str, ...] = ("shading", "drawing", "reading", "shadows")
 #: Roughly how many functions there are; only for people who wait.
 FUNCTIONS = 56
 _FIRST_TIME = "compiling the renderer, the first time only"
