@@ -93,10 +93,10 @@ class Timeline:
         """Let some seconds pass, then hold; return a future that is done when they have passed."""
         now_s = self.now_s
         self._set(now_s, now_s + seconds)
-        self._going_on = self._loop.create_future()
+        going_on = self._going_on = self._loop.create_future()
         if self.speed == math.inf:
             self._jump()
-        return self._going_on
+        return going_on
 
     def _set(self, now_s: float, limit_s: float) -> None:
         self._base_s, self._base_real_s, self._limit_s = now_s, self._loop.time(), limit_s

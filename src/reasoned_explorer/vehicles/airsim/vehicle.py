@@ -139,8 +139,7 @@ class AirSimVehicle(Vehicle):
         faults = [Fault(f"heading {heading}", "finite radians") for heading in headings_rad if not is_finite(heading)]
         if faults:
             raise SettingsError("look", faults)
-        await self._pace.catch_up()
-        await self._see()
+        await self._catch_up()
         wanted = {index: normalise_heading_rad(heading) for index, heading in enumerate(headings_rad)}
         seen: dict[int, tuple[str, _Seen]] = {}
         fitting = {index: name for index, heading in wanted.items() if (name := self._camera_towards(heading))}
@@ -171,9 +170,8 @@ class AirSimVehicle(Vehicle):
         if not is_finite(target.x_m, target.y_m, target.heading_rad):
             raise SettingsError("go_to", [Fault(f"target {target}", "finite coordinates and heading")])
         self._legs, self._looks = self._legs + 1, 0
-        await self._pace.catch_up()
+        true = await self._catch_up()
         aim = replace(target, z_m=self.profile.camera_height_m)
-        true = await self._see()
         # Asking makes the server forget what was run into before.
         await self._pace.talk(self.api.collision)
         settles_s = max(self.profile.settle_s, self._settle_s)
@@ -224,6 +222,12 @@ class AirSimVehicle(Vehicle):
     @property
     def _settle_s(self) -> float:
         return self.profile.settle_s if self.settings.settle_s is None else self.settings.settle_s
+
+    async def _catch_up(self) -> Pose:
+        """Have passed in the simulator what has passed on the mission's clock; return where the vehicle truly is."""
+        await self._pace.catch_up()
+        self._moment, true = await self._pace.talk(self._both)
+        return true
 
     async def _see(self) -> Pose:
         """Find out where the vehicle believes to be, charge the time since this was last done; return the truth."""
