@@ -76,16 +76,16 @@ def triple(value: object) -> tuple[float, float, float]:
 
 
 def quaternion(roll_rad: float, pitch_rad: float, yaw_rad: float) -> Wire:
-    """Return an orientation as it travels."""
+    """Return an orientation as it travels; of the two quaternions that say the same the one whose w is not negative."""
     sin_r, cos_r = math.sin(0.5 * roll_rad), math.cos(0.5 * roll_rad)
     sin_p, cos_p = math.sin(0.5 * pitch_rad), math.cos(0.5 * pitch_rad)
     sin_y, cos_y = math.sin(0.5 * yaw_rad), math.cos(0.5 * yaw_rad)
-    return {
-        "w_val": cos_r * cos_p * cos_y + sin_r * sin_p * sin_y,
-        "x_val": sin_r * cos_p * cos_y - cos_r * sin_p * sin_y,
-        "y_val": cos_r * sin_p * cos_y + sin_r * cos_p * sin_y,
-        "z_val": cos_r * cos_p * sin_y - sin_r * sin_p * cos_y,
-    }
+    w = cos_r * cos_p * cos_y + sin_r * sin_p * sin_y
+    x = sin_r * cos_p * cos_y - cos_r * sin_p * sin_y
+    y = cos_r * sin_p * cos_y + sin_r * cos_p * sin_y
+    z = cos_r * cos_p * sin_y - sin_r * sin_p * cos_y
+    sign = -1.0 if w < 0.0 else 1.0
+    return {"w_val": sign * w, "x_val": sign * x, "y_val": sign * y, "z_val": sign * z}
 
 
 def attitude(value: object) -> Attitude:
