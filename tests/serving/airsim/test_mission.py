@@ -77,8 +77,9 @@ def test_the_same_seed_chooses_the_same_frontiers_as_in_process(
 
 
 def test_it_also_runs_into_the_same_things(atlas: Atlas) -> None:
-    goal, settings = "Find me a fire hydrant", MissionSettings(
-        seed=5, eyes="lines", explorer=ExplorerSettings(max_steps=2)
+    goal, settings = (
+        "Find me a fire hydrant",
+        MissionSettings(seed=5, eyes="lines", explorer=ExplorerSettings(max_steps=2)),
     )
     record = over_the_wire(goal, atlas, settings, generation=1)
     hits = [leg.detail for step in record.steps for leg in step.legs if leg.outcome is LegOutcome.COLLISION]

@@ -183,7 +183,8 @@ class AirSimVehicle(Vehicle):
             outcome, detail = await self._follow(moving, watch)
             if outcome is LegOutcome.ARRIVED and self._settle_s > 0.0:
                 await self._pace.until(None, self._settle_s)
-                watch.see(self._moment, await self._see())
+                true = await self._see()
+                watch.see(self._moment, true)
         except asyncio.CancelledError:
             await asyncio.shield(self._pace.talk(self.api.hover))
             self.last_leg = watch.leg(LegOutcome.STOPPED, "cancelled")
