@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Self
 
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Fault, SettingsError
+from reasoned_explorer.serving.airsim.drifting import Drift, Yaw
+from reasoned_explorer.serving.airsim.drone import Drone
 from reasoned_explorer.serving.airsim.flight_methods import FlightMethods
 from reasoned_explorer.serving.airsim.scene_methods import SceneMethods
 from reasoned_explorer.serving.airsim.settings import AUTHORS_RIG, AirSimSettings
@@ -104,6 +106,19 @@ class AirSimServer:
         """
         self.port = await self._rpc.start(host, self.settings.ApiServerPort if port is None else port)
         return self.port
+
+    def warm_up(self) -> None:
+        """Make the scene, and have compiled what flies and draws, so that the first call does not wait for that.
+
+        On a fresh installation this takes a minute or two, else a few seconds.
+        """
+        drone = self.simulator.drone
+        trial = Drone(drone.atlas, drone.profile, drone.start)
+        here = drone.start
+        trial.fly(0.0, [Pose(here.x_m, here.y_m + 0.5, 1.0, 1.0)], speed_mps=drone.profile.speed_mps, face=True)
+        trial.turn(60.0, 2.0)
+        trial.drift(120.0, Drift(0.1, 0.0, 0.0, 0.1, Yaw()))
+        self.simulator.studio.warm_up()
 
     async def close(self) -> None:
         """Hang up on everybody and stop. Safe to call twice."""

@@ -18,8 +18,8 @@ _Pixels = Annotated[int, Field(ge=1, le=4096)]
 #: The cameras that every AirSim vehicle has, by their names and old numbers: yaw and pitch, degrees.
 STANDARD_CAMERAS = {
     "front_center": (0.0, 0.0),
-    "front_right": (45.0, 0.0),
-    "front_left": (-45.0, 0.0),
+    "front_right": (0.0, 0.0),
+    "front_left": (0.0, 0.0),
     "bottom_center": (0.0, -90.0),
     "back_center": (180.0, 0.0),
 }
