@@ -274,3 +274,22 @@ def test_a_vehicle_that_is_there_has_arrived_whatever_the_simulator_says(served)
 def test_settings_that_are_out_of_range_are_told_at_once():
     with pytest.raises(SettingsError, match="4 faults"):
         DriverSettings(cameras=(), poll_s=0.0, settle_s=-1.0, deadline_s=math.nan)
+
+
+def test_a_server_that_answers_steps_at_once_is_waited_for(served):
+    table = served.server._rpc._methods
+    table["simContinueForTime"] = lambda seconds: table["kept"](seconds) and None
+    table["kept"] = served.server.simulator.timeline.go_on_for
+    held, asked = served.server.simulator.timeline, []
+
+    def is_held():
+        asked.append(held.is_held)
+        return len(asked) % 3 == 0  # only the third time
+
+    table["simIsPaused"] = is_held
+
+    async def script(vehicle):
+        return await vehicle.go_to(Pose(51.0, 50.0))
+
+    assert flown(served, script).outcome is LegOutcome.ARRIVED
+    assert len(asked) > 30

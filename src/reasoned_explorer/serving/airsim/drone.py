@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from reasoned_explorer.world.atlas import Atlas
     from reasoned_explorer.world.sight import Obstacles
 
-#: AirSim rises so far to take off, metres.
-TAKEOFF_M = 3.0
-#: Rising and sinking where no speed is given, metres a second.
+#: AirSim's own flight controller rises so far to take off, metres, and so fast, metres a second.
+TAKEOFF_M, TAKEOFF_MPS = 2.0, 0.5
+#: Sinking to land, metres a second.
 CLIMB_MPS = 1.0
 #: So near the ground it stands on it, metres.
 _LANDED_M = 0.05

@@ -26,7 +26,7 @@ from reasoned_explorer.serving.airsim.arguments import (
     checked,
 )
 from reasoned_explorer.serving.airsim.drifting import Drift, Yaw
-from reasoned_explorer.serving.airsim.drone import TAKEOFF_M
+from reasoned_explorer.serving.airsim.drone import TAKEOFF_M, TAKEOFF_MPS
 from reasoned_explorer.serving.airsim.simulator import Simulator
 from reasoned_explorer.serving.msgpack_rpc import Method
 from reasoned_explorer.vehicles.airsim.conventions import heading_of_yaw_rad
@@ -73,7 +73,7 @@ class FlightMethods:
         sim.check_flies(vehicle_name)
         if not sim.drone.is_landed(sim.now_s):
             return sim.at_once()
-        return sim.obey(lambda now_s: sim.drone.climb(now_s, TAKEOFF_M))
+        return sim.obey(lambda now_s: sim.drone.climb(now_s, TAKEOFF_M, speed_mps=TAKEOFF_MPS))
 
     def land(self, timeout_sec: Unused = 60.0, vehicle_name: Name = "") -> Answer:
         """Sink to the ground."""
@@ -88,14 +88,12 @@ class FlightMethods:
         return self._sim.at_once()
 
     def go_home(self, timeout_sec: Unused = 3e38, vehicle_name: Name = "") -> Answer:
-        """Fly to above where it started, at the height at which it is."""
+        """Fly to where it started, down to the ground, as slowly as AirSim does."""
         del timeout_sec
         sim = self._sim
         sim.check_flies(vehicle_name)
-        z_m = sim.drone.state(sim.now_s).z_m
-        home = Pose(sim.home.x_m, sim.home.y_m, z_m, sim.drone.start.heading_rad)
-        speed = sim.drone.profile.speed_mps
-        return sim.obey(lambda now_s: sim.drone.fly(now_s, [home], speed_mps=speed, face=True))
+        home = Pose(sim.home.x_m, sim.home.y_m, sim.home.z_m)
+        return sim.obey(lambda now_s: sim.drone.fly(now_s, [home], speed_mps=TAKEOFF_MPS, face=False))
 
     def cancel(self, vehicle_name: Name = "") -> None:
         """End what it is doing; it stands still."""

@@ -4,6 +4,7 @@ The first generation is AirSim and Colosseum, whose server says it has version 1
 from 2 on), where some methods take another last argument.
 """
 
+import asyncio
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -25,6 +26,7 @@ _COSYS_FROM = 2
 _ANY_FACING, _AUTO_LOOKAHEAD, _ADAPTIVE = 0, -1, 1
 #: A flight takes as long as it takes: whoever waits has a deadline of its own.
 _NO_LIMIT_S = 3e38
+_ASK_AGAIN_S = 0.002
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +102,7 @@ class AirSimApi:
         self.client, self.name = client, vehicle_name
         self.home = conv.HomeFrame() if home is None else home
         self.server_version = 1
+        self._steps_are_over_when_answered = False
 
     @property
     def is_cosys(self) -> bool:
@@ -231,8 +234,26 @@ class AirSimApi:
         await self.client.call("simPause", paused)
 
     async def go_on_for(self, seconds: float) -> None:
-        """Let a held simulator's time pass for some seconds, then hold it again."""
-        await self.client.call("simContinueForTime", seconds, deadline_s=self.client.deadline_s + 2.0 * seconds)
+        """Let a held simulator's time pass for some seconds, then hold it again; return when it is held.
+
+        Raises:
+            PartError: If it does not come to hold.
+        """
+        limit_s = self.client.deadline_s + 2.0 * seconds
+        await self.client.call("simContinueForTime", seconds, deadline_s=limit_s)
+        if self._steps_are_over_when_answered:
+            return
+        # Old servers answer at once: then it is asked until the step is over.
+        try:
+            async with asyncio.timeout(limit_s):
+                self._steps_are_over_when_answered = await self._is_held()
+                while not self._steps_are_over_when_answered and not await self._is_held():
+                    await asyncio.sleep(_ASK_AGAIN_S)
+        except TimeoutError as error:
+            raise PartError("AirSim", f"the simulator does not come to hold after {seconds:g} s") from error
+
+    async def _is_held(self) -> bool:
+        return await self.client.call("simIsPaused") is True
 
     @property
     def _external(self) -> tuple[bool, ...]:
