@@ -19,7 +19,7 @@ from reasoned_explorer.world.opening import open_world
 pytest.importorskip("msgpack")
 
 #: A camera for each heading, as the embedded simulator has it; there the body settles by itself.
-AS_EMBEDDED = DriverSettings(aims=True, pictures=False, settle_s=0.0)
+AS_EMBEDDED = DriverSettings(aims=True, pictures=False, settle_s=0.0, deadline_s=60.0)
 
 
 @pytest.fixture(scope="module")

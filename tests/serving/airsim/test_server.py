@@ -44,7 +44,7 @@ def served(script, **more):
 
     async def run():
         async with AirSimServer(ATLAS, HOME, speed=AS_FAST_AS_ASKED, **more) as server:
-            client = RpcClient("127.0.0.1", server.port)
+            client = RpcClient("127.0.0.1", server.port, deadline_s=60.0)
             try:
                 await client.call("enableApiControl", True, "")
                 await client.call("armDisarm", True, "")
@@ -131,6 +131,10 @@ def test_in_the_air_it_stays_armed():
         ),
         ("simSetCameraPose", ["0", {"position": vector(0, 0, 0), "orientation": quaternion(0.5, 0, 0)}, ""], "roll"),
         ("simSetSegmentationObjectID", ["(a+)+", 1, True], "regular expression"),
+        ("moveToPosition", [9e4, 0.0, -2.0, 3.0], "longer than is flown here"),
+        ("moveToPosition", [900.0, 0.0, -2.0, 0.06], "longer than is flown here"),
+        ("moveToPosition", [9.0, 0.0, -2.0, 1e-9], "greater than or equal to 0.05"),
+        ("moveByVelocity", [1.0, 0.0, 0.0, 1e6], "less than or equal to 600"),
         ("simContinueForTime", [-1.0], "greater than or equal to 0"),
         ("simPause", ["yes"], "valid boolean"),
     ],

@@ -2,6 +2,7 @@
 
 import asyncio
 import math
+import signal
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from reasoned_explorer.clock import RealClock, SteppedClock, VirtualClock
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import LegOutcome, PartError, SettingsError
+from reasoned_explorer.model.stopping import listening
 from reasoned_explorer.serving.airsim.background import BackgroundServer
 from reasoned_explorer.serving.airsim.server import AS_FAST_AS_ASKED, AirSimServer
 from reasoned_explorer.vehicles import PROFILES
@@ -23,7 +25,8 @@ pytest.importorskip("msgpack")
 
 HOME = Pose(50.0, 50.0)
 DRONE = PROFILES["drone"]
-BLIND = DriverSettings(pictures=False)
+#: Without pictures, and patient: a busy machine is no lost link.
+BLIND = DriverSettings(pictures=False, deadline_s=60.0)
 
 
 @pytest.fixture(scope="module")
@@ -207,6 +210,20 @@ def test_cancelled_on_the_way_it_hovers(served):
     assert (later.x_m, later.y_m) == pytest.approx((here.x_m, here.y_m), abs=0.1)
 
 
+def test_a_person_who_stops_it_on_the_way_has_it_land(served):
+    clock = VirtualClock()
+
+    async def script(vehicle):
+        asyncio.get_running_loop().call_later(2.0, signal.raise_signal, signal.SIGINT)
+        await vehicle.go_to(Pose(30.0, 50.0))
+
+    with listening(), pytest.raises(KeyboardInterrupt):
+        flown(served, script, clock=clock)
+    drone, now_s = drone_of(served)
+    assert 35.0 < drone.state(now_s).x_m < 49.0
+    assert drone.is_landed(now_s)
+
+
 def test_targets_and_headings_that_are_none_are_refused(served):
     async def script(vehicle):
         with pytest.raises(SettingsError, match="finite"):
@@ -235,7 +252,7 @@ def test_nobody_there_is_a_fault_of_the_part(atlas):
         VirtualClock().run(vehicle.start())
 
 
-class Deaf:
+class FakeStill:
     """A simulator whose flights never come to their end, and whose drone does not move."""
 
     def __init__(self, served):
@@ -250,7 +267,7 @@ class Deaf:
 
 
 def test_a_vehicle_that_does_not_move_is_stuck(served):
-    deaf = Deaf(served)
+    still = FakeStill(served)
 
     async def script(vehicle):
         return await vehicle.go_to(Pose(60.0, 50.0))
@@ -258,11 +275,11 @@ def test_a_vehicle_that_does_not_move_is_stuck(served):
     leg = flown(served, script)
     assert (leg.outcome, leg.detail) == (LegOutcome.STUCK, "no progress")
     assert leg.duration_s == pytest.approx(BLIND.stuck_s, abs=0.5)
-    assert deaf.asked[0][:3] == pytest.approx((0.0, 10.0, -1.5))
+    assert still.asked[0][:3] == pytest.approx((0.0, 10.0, -1.5))
 
 
 def test_a_vehicle_that_is_there_has_arrived_whatever_the_simulator_says(served):
-    Deaf(served)
+    FakeStill(served)
 
     async def script(vehicle):
         return await vehicle.go_to(Pose(50.3, 50.0))

@@ -9,13 +9,16 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, validate_cal
 from reasoned_explorer.serving.msgpack_rpc import Method, MethodError
 
 _STRICT = ConfigDict(strict=True, arbitrary_types_allowed=True)
-#: Nothing farther from home, or faster, or longer is flown: metres, metres a second, seconds.
-_FARTHEST_M, _FASTEST_MPS, _LONGEST_S = 1e5, 50.0, 3600.0
+#: Nothing farther from home, slower or faster, or longer is flown: metres, metres a second, seconds.
+_FARTHEST_M, _SLOWEST_MPS, _FASTEST_MPS, _LONGEST_S = 1e5, 0.05, 50.0, 600.0
+#: No step of held time is longer, seconds.
+_LONGEST_STEP_S = 86_400.0
 
 Metres = Annotated[float, Field(ge=-_FARTHEST_M, le=_FARTHEST_M, allow_inf_nan=False)]
-Speed = Annotated[float, Field(gt=0.0, le=_FASTEST_MPS, allow_inf_nan=False)]
+Speed = Annotated[float, Field(ge=_SLOWEST_MPS, le=_FASTEST_MPS, allow_inf_nan=False)]
 Velocity = Annotated[float, Field(ge=-_FASTEST_MPS, le=_FASTEST_MPS, allow_inf_nan=False)]
 Duration = Annotated[float, Field(ge=0.0, le=_LONGEST_S, allow_inf_nan=False)]
+Step = Annotated[float, Field(ge=0.0, le=_LONGEST_STEP_S, allow_inf_nan=False)]
 Degrees = Annotated[float, Field(ge=-36000.0, le=36000.0, allow_inf_nan=False)]
 #: Time-outs, look-aheads: read, and not needed, since flights here come to an end.
 Unused = Annotated[float, Field()]

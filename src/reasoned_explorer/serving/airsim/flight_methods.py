@@ -27,12 +27,15 @@ from reasoned_explorer.serving.airsim.arguments import (
 )
 from reasoned_explorer.serving.airsim.drifting import Drift, Yaw
 from reasoned_explorer.serving.airsim.drone import TAKEOFF_M, TAKEOFF_MPS
+from reasoned_explorer.serving.airsim.flight import State
 from reasoned_explorer.serving.airsim.simulator import Simulator
-from reasoned_explorer.serving.msgpack_rpc import Method
+from reasoned_explorer.serving.msgpack_rpc import Method, MethodError
 from reasoned_explorer.vehicles.airsim.conventions import heading_of_yaw_rad
 
 Answer = asyncio.Future[bool]
 _FORWARD_ONLY = 1
+#: No flight to points is longer, metres and seconds.
+_LONGEST_M, _LONGEST_S = 20_000.0, 7200.0
 _STILL = YawMode()
 _Path = Annotated[list[Vector], Field(min_length=1, max_length=1000)]
 
@@ -222,12 +225,26 @@ class FlightMethods:
                 heading_rad = heading_towards_rad(before_x_m, before_y_m, x_m, y_m)
             targets.append(Pose(x_m, y_m, max(0.0, z_m), heading_rad))
             before_x_m, before_y_m = x_m, y_m
+        _check_length(here, targets, velocity)
         face = drivetrain == _FORWARD_ONLY or not yaw_mode.is_rate
         return sim.obey(lambda now_s: sim.drone.fly(now_s, targets, speed_mps=velocity, face=face))
 
     def _drift(self, drift: Drift, vehicle_name: str) -> Answer:
         self._sim.check_flies(vehicle_name)
         return self._sim.obey(lambda now_s: self._sim.drone.drift(now_s, drift))
+
+
+def _check_length(here: State, path: list[Pose], speed_mps: float) -> None:
+    """Check that a flight is not so long that working it out would hold up everybody else.
+
+    Raises:
+        MethodError: If it is.
+    """
+    length_m, at = 0.0, Pose(here.x_m, here.y_m)
+    for target in path:
+        length_m, at = length_m + at.distance_to_m(target.x_m, target.y_m), target
+    if length_m > _LONGEST_M or length_m > speed_mps * _LONGEST_S:
+        raise MethodError(f"a flight of {length_m:.0f} m at {speed_mps:g} m/s is longer than is flown here")
 
 
 def _yaw(drivetrain: int, mode: YawMode) -> Yaw:

@@ -7,7 +7,7 @@ from typing import Any
 
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.serving.airsim import messages
-from reasoned_explorer.serving.airsim.arguments import Duration, LoosePose, Name, checked
+from reasoned_explorer.serving.airsim.arguments import LoosePose, Name, Step, checked
 from reasoned_explorer.serving.airsim.simulator import Simulator
 from reasoned_explorer.serving.msgpack_rpc import Method, MethodError
 from reasoned_explorer.vehicles.airsim.conventions import Wire, attitude
@@ -67,7 +67,7 @@ class StateMethods:
         else:
             self._sim.timeline.let_go()
 
-    def go_on_for(self, seconds: Duration) -> "asyncio.Future[None]":
+    def go_on_for(self, seconds: Step) -> "asyncio.Future[None]":
         """Let time pass for a while, then hold it."""
         return self._sim.timeline.go_on_for(seconds)
 

@@ -143,7 +143,6 @@ class Studio:
     def take(self, body: State, wanted: Sequence[Wanted]) -> "list[asyncio.Future[dict[str, Any]]]":
         """Begin to take pictures for a body; return futures of their data (see `_packed`), in order."""
         loop = asyncio.get_running_loop()
-        numbers = self._scenery
         if self._pool is None:
             self._pool = ThreadPoolExecutor(os.cpu_count() or 1, thread_name_prefix="pictures")
         made = []
@@ -151,9 +150,32 @@ class Studio:
             aim = self._aims[one.camera]
             camera = self.camera(one.camera, one.kind)
             pose, pitch_rad = aim.pose(body), aim.pitch_rad
-            job = partial(_taken, self._renderer, numbers, one, pose=pose, pitch_rad=pitch_rad, camera=camera)
+            job = partial(self._taken, one, pose=pose, pitch_rad=pitch_rad, camera=camera)
             made.append(loop.run_in_executor(self._pool, job))
         return made
+
+    def _taken(self, wanted: Wanted, *, pose: Pose, pitch_rad: float, camera: Camera) -> dict[str, Any]:
+        """Take one picture and return what of an answer depends on it; the first one waits for the scene."""
+        renderer = self._renderer
+        sighted: Sighted
+        pixels: NDArray[np.uint8]
+        if wanted.kind is ImageType.SCENE:
+            picture = renderer.picture(pose, camera, pitch_rad=pitch_rad)
+            sighted, pixels = picture, picture.colour
+        else:
+            sighted = renderer.ids(pose, camera, pitch_rad=pitch_rad)
+            pixels = np.empty(0, np.uint8)
+        size = {"width": camera.width_px, "height": camera.height_px}
+        if wanted.as_float or wanted.kind not in {ImageType.SCENE, ImageType.SEGMENTATION}:
+            depths = _depths(sighted.depth_m, camera, wanted.kind)
+            if wanted.as_float:
+                return {"image_data_uint8": b"", "image_data_float": depths.ravel().tolist(), **size}
+            top = 1.0 if wanted.kind is ImageType.DEPTH_VIS else 255.0
+            grey = np.round(np.clip(depths / top, 0.0, 1.0) * 255.0).astype(np.uint8)
+            pixels = np.repeat(grey[:, :, None], 3, axis=2)
+        elif wanted.kind is ImageType.SEGMENTATION:
+            pixels = segmentation_colours()[self._scenery.numbered(sighted.instances)]
+        return {"image_data_uint8": _packed(pixels, compress=wanted.compress), "image_data_float": [], **size}
 
     @property
     def _renderer(self) -> "Renderer":
@@ -162,31 +184,6 @@ class Studio:
 
 def _aim_of(camera: CameraSettings) -> Aim:
     return Aim(camera.X, camera.Y, camera.Z, math.radians(camera.Yaw), math.radians(camera.Pitch))
-
-
-def _taken(
-    renderer: "Renderer", scenery: Scenery, wanted: Wanted, *, pose: Pose, pitch_rad: float, camera: Camera
-) -> dict[str, Any]:
-    """Take one picture and return what of an answer depends on it."""
-    sighted: Sighted
-    pixels: NDArray[np.uint8]
-    if wanted.kind is ImageType.SCENE:
-        picture = renderer.picture(pose, camera, pitch_rad=pitch_rad)
-        sighted, pixels = picture, picture.colour
-    else:
-        sighted = renderer.ids(pose, camera, pitch_rad=pitch_rad)
-        pixels = np.empty(0, np.uint8)
-    size = {"width": camera.width_px, "height": camera.height_px}
-    if wanted.as_float or (wanted.kind is not ImageType.SCENE and wanted.kind is not ImageType.SEGMENTATION):
-        depths = _depths(sighted.depth_m, camera, wanted.kind)
-        if wanted.as_float:
-            return {"image_data_uint8": b"", "image_data_float": depths.ravel().tolist(), **size}
-        top = 1.0 if wanted.kind is ImageType.DEPTH_VIS else 255.0
-        grey = np.round(np.clip(depths / top, 0.0, 1.0) * 255.0).astype(np.uint8)
-        pixels = np.repeat(grey[:, :, None], 3, axis=2)
-    elif wanted.kind is ImageType.SEGMENTATION:
-        pixels = segmentation_colours()[scenery.numbered(sighted.instances)]
-    return {"image_data_uint8": _packed(pixels, compress=wanted.compress), "image_data_float": [], **size}
 
 
 def _depths(depth_m: NDArray[np.float32], camera: Camera, kind: ImageType) -> NDArray[np.float32]:

@@ -10,7 +10,7 @@ import asyncio
 from collections.abc import Callable, Coroutine
 from typing import Any, Protocol, TypeVar
 
-from reasoned_explorer.clock import Clock, run_live
+from reasoned_explorer.clock import Clock
 from reasoned_explorer.clock.live_thread import Stopwatch, begin_live
 from reasoned_explorer.vehicles.airsim.api import AirSimApi
 from reasoned_explorer.vehicles.airsim.rpc import Pending
@@ -100,7 +100,8 @@ class SteppedPace:
 
     async def talk(self, call: Callable[[], Coroutine[Any, Any, T]]) -> T:
         """Talk, while nothing else goes on here."""
-        return run_live(call)
+        # A request to stop cancels the mission where it next lets time pass; an answer has its deadline.
+        return begin_live(call, Stopwatch()).result()
 
     async def begin(self) -> None:
         """Hold the simulator's time."""
