@@ -143,6 +143,8 @@ class Studio:
     def take(self, body: State, wanted: Sequence[Wanted]) -> "list[asyncio.Future[dict[str, Any]]]":
         """Begin to take pictures for a body; return futures of their data (see `_packed`), in order."""
         loop = asyncio.get_running_loop()
+        # Made here, by one thread: several that load and compile at once have been seen to wait for each other.
+        renderer = self._renderer
         if self._pool is None:
             self._pool = ThreadPoolExecutor(os.cpu_count() or 1, thread_name_prefix="pictures")
         made = []
@@ -150,13 +152,14 @@ class Studio:
             aim = self._aims[one.camera]
             camera = self.camera(one.camera, one.kind)
             pose, pitch_rad = aim.pose(body), aim.pitch_rad
-            job = partial(self._taken, one, pose=pose, pitch_rad=pitch_rad, camera=camera)
+            job = partial(self._taken, renderer, one, pose=pose, pitch_rad=pitch_rad, camera=camera)
             made.append(loop.run_in_executor(self._pool, job))
         return made
 
-    def _taken(self, wanted: Wanted, *, pose: Pose, pitch_rad: float, camera: Camera) -> dict[str, Any]:
-        """Take one picture and return what of an answer depends on it; the first one waits for the scene."""
-        renderer = self._renderer
+    def _taken(
+        self, renderer: "Renderer", wanted: Wanted, *, pose: Pose, pitch_rad: float, camera: Camera
+    ) -> dict[str, Any]:
+        """Take one picture and return what of an answer depends on it."""
         sighted: Sighted
         pixels: NDArray[np.uint8]
         if wanted.kind is ImageType.SCENE:
