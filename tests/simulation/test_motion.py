@@ -252,3 +252,23 @@ def test_two_processes_move_alike_to_the_last_bit(capsys):
     here = capsys.readouterr().out.strip()
     assert len(here) == hashlib.sha256().digest_size * 2
     assert other.stdout.strip() == here
+
+
+def test_it_can_be_put_elsewhere_and_drives_on_from_there():
+    made = body()
+    made.drive(Pose(50.0, 60.0), leg=0)
+    made.place(Pose(20.0, 30.0, 0.0, 1.0))
+    assert made.true_pose == Pose(20.0, 30.0, 0.0, 1.0)
+    assert made.pose.distance_to_m(20.0, 30.0) < 0.1
+    motion = made.drive(Pose(25.0, 30.0), leg=1)
+    assert motion.end is End.ARRIVED
+    assert made.true_pose.distance_to_m(25.0, 30.0) < 0.5
+
+
+def test_its_cruise_speed_can_be_changed():
+    slow, fast = body(), body()
+    fast.cruise_at(6.0)
+    target = Pose(50.0, 80.0)
+    slow_s, fast_s = slow.drive(target, leg=0).duration_s, fast.drive(target, leg=0).duration_s
+    assert fast.profile.speed_mps == 6.0
+    assert fast_s < 0.75 * slow_s

@@ -282,6 +282,21 @@ class Body:
         due_s = 2.0 * math.pi / self.profile.turn_rate_radps
         return self._run(leg, due_s=due_s)
 
+    def place(self, pose: Pose) -> None:
+        """Put the body somewhere else, at rest; its filter begins anew there, with what one fix says."""
+        self._rest()
+        self._true[[kernels.TRUE_X, kernels.TRUE_Y, kernels.TRUE_HEADING]] = pose.x_m, pose.y_m, pose.heading_rad
+        fresh = self._first_belief(pose)
+        for array, first in zip(self._arrays()[2:], (fresh.state, fresh.covariance, fresh.rejects), strict=True):
+            array[...] = first
+
+    def cruise_at(self, speed_mps: float) -> None:
+        """Take another cruise speed from the next motion on, metres a second."""
+        if speed_mps != self.profile.speed_mps:
+            self.profile = replace(self.profile, speed_mps=speed_mps)
+            self._body[kernels.BODY_SPEED] = speed_mps
+            self._follow = FollowerSettings.of(self.profile).as_array()
+
     def wait(self, duration_s: float) -> None:
         """Let seconds pass in which the body stands still."""
         if duration_s <= 0.0:

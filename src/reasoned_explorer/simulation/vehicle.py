@@ -295,12 +295,28 @@ class SimulatedVehicle(Vehicle):
 
 
 def obstacles_on_leg(
-    atlas: "Atlas", profile: VehicleProfile, here: Pose, there: Pose, *, margin_m: float = _MARGIN_M
+    atlas: "Atlas",
+    profile: VehicleProfile,
+    here: Pose,
+    there: Pose,
+    *,
+    margin_m: float = _MARGIN_M,
+    z_m: float | None = None,
 ) -> "Obstacles | None":
-    """Return what a vehicle could run into on a straight leg and up to a margin beside it; None where it never does."""
+    """Return what a vehicle could run into on a straight leg and up to a margin beside it; None where it never does.
+
+    Args:
+        atlas: Of the world.
+        profile: Of the vehicle.
+        here: Where the leg begins.
+        there: Where it ends.
+        margin_m: How far beside it, metres.
+        z_m: At which height above the ground, metres; by default where the profile's machine is.
+    """
     if not profile.collides:
         return None
-    z_m = profile.camera_height_m if profile.flies else _WALKER_Z_M
+    if z_m is None:
+        z_m = profile.camera_height_m if profile.flies else _WALKER_Z_M
     return atlas.sight.obstacles_near(here.x_m, here.y_m, there.x_m, there.y_m, z_m=z_m, margin_m=margin_m)
 
 

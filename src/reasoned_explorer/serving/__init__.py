@@ -1,0 +1,1 @@
+"""The embedded simulator as other machines and simulators: their wires, answered."""

@@ -1,0 +1,1 @@
+"""AirSim, Colosseum and Cosys-AirSim: their wire, their conventions, and a drone that flies over it."""
