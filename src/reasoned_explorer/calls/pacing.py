@@ -20,7 +20,11 @@ _BURST_SHARE = 0.1  # of a minute's worth may go at once where nobody tells how 
 _MARGIN = 0.99  # of a limit that is told: calls do not arrive as evenly as they are sent
 _CREEP = 0.005  # the measured rate is raised by this share with each grant, to find out whether more is granted
 _CREEP_AFTER = 30.0  # grants since the last refusal until it is raised by all of it
+_SAVED = (
+    0.9  # of what a closed gate has saved up goes at once: it takes a moment to send, in which nothing more is saved
+)
 _RAMP_OF_GATE = 2.0  # or this many times the grants that a closed gate costs, where that is more
+_MOST_FOUND = 8  # refusals after which the next one is not looked for any more slowly
 _LONGEST_BACK_OFF_S = 30.0
 _FIRST_BACK_OFF_S = 0.5
 _JAM_MEMORY_S = 30.0
@@ -147,6 +151,7 @@ class _Jam:
     granted: float = 0.0
     refused: float = 0.0
     smooth: int = 0
+    found: int = 0
     ramp: float = _CREEP_AFTER
 
 
@@ -264,7 +269,8 @@ class Pacer:
         self._serve()
 
     def _limited(self, ticket: Ticket, headers: Mapping[str, str], now_s: float) -> None:
-        if ticket.sent_s >= self._closed_at_s:  # not one more of those that went out together
+        is_first = ticket.sent_s >= self._closed_at_s  # and not one more of those that went out together
+        if is_first:
             self._refusals_in_a_row += 1
             self._closed_at_s = now_s
         wait_s = retry_after_s(headers)
@@ -282,8 +288,11 @@ class Pacer:
             jam.smooth = 0
             gate_s = self._closed_until_s - self._closed_at_s
             # The more a closed gate costs, the more slowly the next refusal is looked for.
-            jam.ramp = max(_CREEP_AFTER, _RAMP_OF_GATE * per_s * gate_s)
-            self._requests.measured(per_s, self._closed_until_s, after_s=gate_s)
+            # And the oftener it was found, the better the rate is known.
+            is_rounded = 0.5 <= gate_s <= 1.5
+            jam.found += is_first and is_rounded
+            jam.ramp = max(_CREEP_AFTER, _RAMP_OF_GATE * per_s * gate_s * max(1, min(jam.found, _MOST_FOUND)))
+            self._requests.measured(per_s, self._closed_until_s, after_s=(_SAVED if is_rounded else 1.0) * gate_s)
             if span_s > _JAM_MEMORY_S:
                 jam.since_s, jam.granted, jam.refused = (
                     jam.since_s + span_s / 2.0,

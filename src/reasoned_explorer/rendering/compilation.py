@@ -83,6 +83,7 @@ def _compile_shading(scene: Scene) -> None:
         room.wanted,
         *room.samples,
         1,
+        np.ones(_SIDE, np.uint8),
         np.empty((_SIDE, _SIDE, 3), np.uint8),
     )
 

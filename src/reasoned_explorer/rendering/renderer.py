@@ -119,7 +119,7 @@ class Renderer:
 
     def _shaded(self, view: Projection, canvas: Canvas, camera: Camera) -> NDArray[np.uint8]:
         colour = np.empty((camera.height_px, camera.width_px, 3), np.uint8)
-        wanted = self._room().wanted
+        wanted, rows = self._room().wanted, np.ones(camera.height_px, np.uint8)
         # Where there is no tile yet, nearly all that are needed are found out with few pixels.
         step = 1 if self._shadows.are_begun else _QUICK_STEP
         while True:
@@ -137,10 +137,14 @@ class Renderer:
                     wanted,
                     *self._room().samples,
                     step,
+                    rows,
                     colour,
                 )
             if done and step == 1:
                 return colour
+            # Wet ground mirrors rows above it, which may have been wrong.
+            if step > 1 or self._light.wetness > 0.0:
+                rows[:] = 1
             step = 1
             self._shadows.make(wanted)
 

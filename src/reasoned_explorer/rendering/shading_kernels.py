@@ -515,12 +515,15 @@ def shade(
     owners: NDArray[np.int32],
     triangles: NDArray[np.int32],
     step: int,
+    rows: NDArray[np.uint8],
     picture: NDArray[np.uint8],
 ) -> bool:
     """Set the picture, shape (height, width, 3); return whether all shadow tiles that it needs were there.
 
     The samples of a pixel that show the same triangle are shaded together, in their middle. With a ``step`` above 1
     only every so many columns of every so many rows are set: a quick look at which tiles will be needed.
+
+    Only rows that are marked in ``rows``, shape (height,), are set; those that lacked a tile stay marked.
     """
     faces, stands = surfaces.faces, surfaces.stands
     codes, corner, materials, colours = looks.codes, looks.corner, looks.materials, looks.colours
@@ -539,7 +542,11 @@ def shade(
     scale = (curve.shape[0] - 1) / (4.0 * count)
     per_focal = 1.0 / focal
     last = curve.shape[0] - 1
+    complete = True
     for y in range(0, picture.shape[0], step):
+        if rows[y] == 0:
+            continue
+        wanted[0] = 0
         for x in range(0, picture.shape[1], step):
             for k in range(count):
                 row, column = y * samples + (k >> 1), x * samples + (k & 1)
@@ -664,4 +671,7 @@ def shade(
             picture[y, x, 0] = curve[min(last, int(scale * max(red, 0.0)))]
             picture[y, x, 1] = curve[min(last, int(scale * max(green, 0.0)))]
             picture[y, x, 2] = curve[min(last, int(scale * max(blue, 0.0)))]
-    return wanted[0] == 0
+        rows[y] = wanted[0]
+        if wanted[0] != 0:
+            complete = False
+    return complete
