@@ -15,7 +15,7 @@ from reasoned_explorer.cli.app import app
 from reasoned_explorer.evaluation.record_file import read_record
 from tests.cli.full_disk import rex_with_files_up_to
 
-FAST = ["--world", "plaza:3@200", "--seed", "1", "--no-map"]
+FAST = ["--world", "plaza:3@200", "--seed", "6", "--no-map"]
 
 
 def _rex(*arguments: str) -> tuple[int, str]:
@@ -215,7 +215,7 @@ ROOT = "reasoned_explorer"
 MOMENTS = {
     "while the world is made": (f"{ROOT}.world.generator.generate.find_sites", None),
     "while the mission is set up": (f"{ROOT}.world.geodesic.search", None),
-    "while the agent looks": (f"{ROOT}.simulation.eyes_kernels.see_walls", "interrupted"),
+    "while the agent looks": (f"{ROOT}.simulation.pixel_eyes_kernels.see", "interrupted"),
     "while it travels": (f"{ROOT}.exploration.explorer._facing_onwards", "interrupted"),
     "while the map is drawn": (f"{ROOT}.evaluation.mission_map.paint_world", "found"),
 }
@@ -244,7 +244,7 @@ def test_a_mistake_in_a_part_is_no_mission_without_success(monkeypatch: pytest.M
     def broken(*args: object) -> None:
         raise ZeroDivisionError("a mistake")
 
-    monkeypatch.setattr("reasoned_explorer.simulation.eyes_kernels.see_walls", broken)
+    monkeypatch.setattr("reasoned_explorer.simulation.pixel_eyes_kernels.see", broken)
     code, shown = _rex("run", "Find me a bench", *FAST)
     assert code == 3
     assert "rex: a part failed: ZeroDivisionError: a mistake" in shown
