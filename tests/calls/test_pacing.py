@@ -57,11 +57,13 @@ class Window(Bucket):
         return False, {"retry-after": f"{math.ceil(recent[0] + 10.0 - now_s)}"}
 
 
-async def call(pacer: Pacer, server: Bucket, *, tokens: float = 0.0) -> None:
+async def call(pacer: Pacer, server: Bucket, *, tokens: float = 0.0, line: "Line | None" = None) -> None:
     loop = asyncio.get_running_loop()
     again = False
     while True:
         ticket = await pacer.turn(tokens=tokens, patience_s=1e6, again=again)
+        if line is not None:
+            await line.send()
         is_in, headers = server.ask(loop.time())
         if is_in:
             await asyncio.sleep(LATENCY_S)
@@ -72,13 +74,25 @@ async def call(pacer: Pacer, server: Bucket, *, tokens: float = 0.0) -> None:
         again = True
 
 
-def share_of_limit(limits: Limits, server: Bucket, calls: int = 6000) -> float:
+class Line:
+    """Sends one call after the other, each of which takes a moment of the processor."""
+
+    def __init__(self, seconds: float) -> None:
+        self._seconds, self._lock = seconds, asyncio.Lock()
+
+    async def send(self) -> None:
+        async with self._lock:
+            await asyncio.sleep(self._seconds)
+
+
+def share_of_limit(limits: Limits, server: Bucket, calls: int = 6000, *, send_s: float = 0.0) -> float:
     """Return what went through over what might have gone through until all were done."""
 
     async def traffic() -> float:
         pacer, loop = Pacer(limits), asyncio.get_running_loop()
+        line = Line(send_s) if send_s else None
         began_s = server.at_s = loop.time()
-        await asyncio.gather(*(call(pacer, server) for _ in range(calls)))
+        await asyncio.gather(*(call(pacer, server, line=line) for _ in range(calls)))
         return calls / (server.burst + server.per_s * (loop.time() - LATENCY_S - began_s))
 
     return VirtualClock().run(traffic())
@@ -111,6 +125,12 @@ def test_a_known_limit_is_used_up_and_never_exceeded(limits: Limits, server: Buc
 def test_an_unknown_limit_is_found(limits: Limits, server: Bucket) -> None:
     assert share_of_limit(limits, server) >= 0.95
     assert server.turned_away <= 0.10 * len(server.admitted)
+
+
+def test_a_burst_that_takes_a_moment_to_send_costs_little() -> None:
+    # A bucket of one second's worth is full when Retry-After, in whole seconds, lets the next call go.
+    server = Bucket(50, 50, retry_after="seconds")
+    assert share_of_limit(Limits(), server, calls=1550, send_s=0.002) >= 0.97
 
 
 def test_tokens_a_minute_hold_back_too() -> None:

@@ -20,11 +20,12 @@ _BURST_SHARE = 0.1  # of a minute's worth may go at once where nobody tells how 
 _MARGIN = 0.99  # of a limit that is told: calls do not arrive as evenly as they are sent
 _CREEP = 0.005  # the measured rate is raised by this share with each grant, to find out whether more is granted
 _CREEP_AFTER = 30.0  # grants since the last refusal until it is raised by all of it
-_SAVED = (
-    0.9  # of what a closed gate has saved up goes at once: it takes a moment to send, in which nothing more is saved
-)
 _RAMP_OF_GATE = 2.0  # or this many times the grants that a closed gate costs, where that is more
-_MOST_FOUND = 8  # refusals after which the next one is not looked for any more slowly
+# A gate that is closed for about a second has been closed in whole seconds, and longer than need be. Of what it saves up
+# a little less goes at once: sending takes a moment, in which a bucket that is full saves nothing more.
+_ABOUT_A_SECOND_S = 0.5, 1.5
+_SAVED = 0.9
+_MOST_FOUND = 8  # such refusals, after which the next one is not looked for any more slowly
 _LONGEST_BACK_OFF_S = 30.0
 _FIRST_BACK_OFF_S = 0.5
 _JAM_MEMORY_S = 30.0
@@ -287,9 +288,9 @@ class Pacer:
             per_s = max(1.0, jam.granted - jam.refused + 1.0) / span_s
             jam.smooth = 0
             gate_s = self._closed_until_s - self._closed_at_s
-            # The more a closed gate costs, the more slowly the next refusal is looked for.
-            # And the oftener it was found, the better the rate is known.
-            is_rounded = 0.5 <= gate_s <= 1.5
+            # The more a closed gate costs, and the oftener the rate was found, the more slowly the next refusal is
+            # looked for.
+            is_rounded = _ABOUT_A_SECOND_S[0] <= gate_s <= _ABOUT_A_SECOND_S[1]
             jam.found += is_first and is_rounded
             jam.ramp = max(_CREEP_AFTER, _RAMP_OF_GATE * per_s * gate_s * max(1, min(jam.found, _MOST_FOUND)))
             self._requests.measured(per_s, self._closed_until_s, after_s=(_SAVED if is_rounded else 1.0) * gate_s)
