@@ -21,8 +21,8 @@ _MARGIN = 0.99  # of a limit that is told: calls do not arrive as evenly as they
 _CREEP = 0.005  # the measured rate is raised by this share with each grant, to find out whether more is granted
 _CREEP_AFTER = 30.0  # grants since the last refusal until it is raised by all of it
 _RAMP_OF_GATE = 2.0  # or this many times the grants that a closed gate costs, where that is more
-# A gate that is closed for about a second has been closed in whole seconds, and longer than need be. Of what it saves up
-# a little less goes at once: sending takes a moment, in which a bucket that is full saves nothing more.
+# A gate that is closed for about a second has been closed in whole seconds, and longer than need be. Of what it saves
+# up a little less goes at once: sending takes a moment, in which a bucket that is full saves nothing more.
 _ABOUT_A_SECOND_S = 0.5, 1.5
 _SAVED = 0.9
 _MOST_FOUND = 8  # such refusals, after which the next one is not looked for any more slowly
