@@ -9,12 +9,13 @@ def main() -> None:
     """
     import gc
 
+    from reasoned_explorer.model.garbage import RARELY
     from reasoned_explorer.model.stopping import end_listening, listen
 
     # From the very beginning: loading the commands takes a moment, too.
     listen()
     # What is loaded stays: looking for garbage in it costs a twentieth of the start.
-    gc.set_threshold(50_000, 50, 1_000)
+    gc.set_threshold(*RARELY)
     from reasoned_explorer.cli.app import app
 
     try:

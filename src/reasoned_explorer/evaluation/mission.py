@@ -40,6 +40,7 @@ from reasoned_explorer.model import (
     WorldError,
 )
 from reasoned_explorer.model.checks import kind_faults, path_of
+from reasoned_explorer.model.garbage import RARELY
 from reasoned_explorer.model.record import EpisodeRecord, MissionEnd, MissionHeader, MissionSummary, StepRecord
 from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.perception import Captioner
@@ -63,8 +64,6 @@ from reasoned_explorer.world.world import World
 #: A seeded random start is at least and at most this far, on the shortest compliant way, from being successful, where
 #: there is such a start.
 START_RANGE_M = (60.0, 400.0)
-#: How rarely garbage is looked for while missions run, as `gc.set_threshold` takes it.
-RARELY = (50_000, 50, 1_000)
 
 
 @dataclass(frozen=True, slots=True)

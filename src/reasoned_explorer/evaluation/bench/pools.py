@@ -15,8 +15,8 @@ from typing import Any, TypeVar
 
 from reasoned_explorer.evaluation.bench.plan import BenchPlan, Task
 from reasoned_explorer.evaluation.bench.worker import Done, failed_row, run_task
-from reasoned_explorer.evaluation.mission import RARELY
 from reasoned_explorer.evaluation.model_access import PLAIN_ACCESS, ModelAccess
+from reasoned_explorer.model.garbage import RARELY
 from reasoned_explorer.model.stopping import stop_if_asked
 
 T = TypeVar("T")
