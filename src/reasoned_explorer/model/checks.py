@@ -23,6 +23,15 @@ def number_faults(numbers: Iterable[tuple[str, object]]) -> list[Fault]:
     return [Fault(f"{name} is {value!r}", "a finite number") for name, value in numbers if not is_within(value)]
 
 
+def positive_faults(numbers: Iterable[tuple[str, object]]) -> list[Fault]:
+    """Return a fault for each named value that is no finite number above 0."""
+    return [
+        Fault(f"{name} = {value}", "a finite number > 0")
+        for name, value in numbers
+        if not (is_within(value, 0.0) and value)
+    ]
+
+
 def seed_faults(seed: object) -> list[Fault]:
     """Return a fault where a seed is none."""
     return [] if is_within(seed, 0, whole=True) else [Fault(f"seed is {seed!r}", "a whole number from 0 on")]

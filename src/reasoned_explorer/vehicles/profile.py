@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass, field
 
 from reasoned_explorer.model import Camera, Fault, SettingsError
+from reasoned_explorer.model.checks import positive_faults
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,11 +53,7 @@ class VehicleProfile:
     def __post_init__(self) -> None:
         positive = ("speed_mps", "acceleration_mps2", "turn_rate_radps", "turn_acceleration_radps2", "camera_height_m")
         not_negative = ("settle_s", "look_s", "sway_mps")
-        faults = [
-            Fault(f"{name} = {getattr(self, name)}", "a finite number > 0")
-            for name in (*positive, "radius_m")
-            if not (math.isfinite(getattr(self, name)) and getattr(self, name) > 0.0)
-        ]
+        faults = positive_faults((name, getattr(self, name)) for name in (*positive, "radius_m"))
         faults += [
             Fault(f"{name} = {getattr(self, name)}", "a finite number ≥ 0")
             for name in not_negative

@@ -14,6 +14,7 @@ import numpy as np
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.geometry.frames import is_finite
 from reasoned_explorer.model import Fault, SettingsError
+from reasoned_explorer.model.checks import positive_faults
 from reasoned_explorer.vehicles.control import kernels
 from reasoned_explorer.vehicles.control.kernels import Floats
 from reasoned_explorer.vehicles.control.pid import PidGains
@@ -98,11 +99,7 @@ class FollowerSettings:
             for item in fields(self)
             if item.name not in {"sideways", "heading_gains"}
         }
-        faults = [
-            Fault(f"{name} = {value}", "a finite number > 0")
-            for name, value in numbers.items()
-            if not (math.isfinite(value) and value > 0.0)
-        ]
+        faults = positive_faults(numbers.items())
         if self.braking_mps2 > self.acceleration_mps2:
             faults.append(Fault(f"braking_mps2 = {self.braking_mps2}", f"at most {self.acceleration_mps2}"))
         if self.turn_in_place_below_rad >= self.turn_in_place_above_rad:

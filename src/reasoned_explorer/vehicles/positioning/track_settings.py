@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 
 from reasoned_explorer.model import Fault, SettingsError
-from reasoned_explorer.model.checks import is_within
+from reasoned_explorer.model.checks import positive_faults
 from reasoned_explorer.vehicles.control.localization import FilterSettings
 from reasoned_explorer.vehicles.positioning.fix import FixQuality
 from reasoned_explorer.vehicles.positioning.receivers import RECEIVERS, ReceiverModel
@@ -51,11 +51,8 @@ class TrackSettings:
     rejects: int = 20
 
     def __post_init__(self) -> None:
-        faults = [
-            Fault(f"{item.name} = {getattr(self, item.name)}", "a finite number > 0")
-            for item in fields(self)
-            if item.name != "receivers" and not (is_within(getattr(self, item.name)) and getattr(self, item.name) > 0)
-        ]
+        names = [item.name for item in fields(self) if item.name != "receivers"]
+        faults = positive_faults((name, getattr(self, name)) for name in names)
         faults += [
             Fault(f"no model of fixes that are {quality.as_text}", "one for each quality but none")
             for quality in FixQuality
