@@ -133,6 +133,26 @@ def test_a_burst_that_takes_a_moment_to_send_costs_little() -> None:
     assert share_of_limit(Limits(), server, calls=1550, send_s=0.002) >= 0.97
 
 
+def test_of_many_that_may_go_the_first_is_sent_before_the_last_has_its_turn() -> None:
+    async def traffic() -> list[str]:
+        pacer, events = Pacer(Limits()), list[str]()
+
+        async def one() -> None:
+            ticket = await pacer.turn(tokens=0.0, patience_s=9.0)
+            events.append("turn")
+            for _ in range(10):  # a request is put together in some turns of the loop
+                await asyncio.sleep(0)
+            events.append("sent")
+            pacer.done(ticket, Sign.ANSWERED)
+
+        await asyncio.gather(*(one() for _ in range(50)))
+        return events
+
+    events = VirtualClock().run(traffic())
+    assert events[: events.index("sent")].count("turn") <= 12
+    assert events.count("sent") == 50
+
+
 def test_tokens_a_minute_hold_back_too() -> None:
     async def traffic() -> float:
         pacer, loop = Pacer(Limits(tokens_per_minute=6000)), asyncio.get_running_loop()

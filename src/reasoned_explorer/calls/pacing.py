@@ -22,7 +22,7 @@ _CREEP = 0.005  # the measured rate is raised by this share with each grant, to 
 _CREEP_AFTER = 30.0  # grants since the last refusal until it is raised by all of it
 _RAMP_OF_GATE = 2.0  # or this many times the grants that a closed gate costs, where that is more
 # A gate that is closed for about a second has been closed in whole seconds, and longer than need be. Of what it saves
-# up a little less goes at once: sending takes a moment, in which a bucket that is full saves nothing more.
+# up a little less goes at once: a bucket that holds no more than that is full and saves nothing while it is sent.
 _ABOUT_A_SECOND_S = 0.5, 1.5
 _SAVED = 0.9
 _MOST_FOUND = 8  # such refusals, after which the next one is not looked for any more slowly
@@ -201,6 +201,7 @@ class Pacer:
         self._refusals_in_a_row = 0
         self._jam = _Jam()
         self._timer: asyncio.TimerHandle | None = None
+        self._soon: asyncio.Handle | None = None
 
     @property
     def at_once(self) -> int:
@@ -262,7 +263,8 @@ class Pacer:
             self._tokens.told(headers, "tokens", ticket.sent_s, ticket.tokens_spent, now_s)
         if sign is Sign.ANSWERED:
             self._refusals_in_a_row = 0
-            self._window.answered(self._in_flight + 1)
+            about_to_go = len(self._queue) if self._soon is not None else 0
+            self._window.answered(self._in_flight + 1 + about_to_go)
         elif sign is Sign.OVERLOADED:
             self._window.failed(ticket.number, self._number)
         elif sign is Sign.LIMITED:
@@ -302,7 +304,13 @@ class Pacer:
                 )
 
     def _serve(self) -> None:
-        """Let those go whose turn it is, and come back when it will be the next one's."""
+        """Let one go if it is its turn, and come back when it will be the next one's.
+
+        No more than one goes in each turn of the event loop. A call takes several of them until it is sent: many that
+        go together are sent together too, all of them as late as the last.
+        """
+        if self._soon is not None:
+            return
         loop = asyncio.get_running_loop()
         now_s = loop.time()
         wait_s: float | None = None
@@ -320,7 +328,8 @@ class Pacer:
                 break
             self._queue.popleft()
             place.set_result(self._ticket(tokens, now_s))
-            wait_s = None
+            self._soon = loop.call_soon(self._serve_next)
+            return
         if not self._queue and self._jam.since_s is not None:
             self._jam.since_s = None
             self._requests.measured(math.inf, now_s)
@@ -329,6 +338,10 @@ class Pacer:
             self._timer = None
         if wait_s is not None and wait_s > 0.0:
             self._timer = loop.call_later(wait_s, self._serve)
+
+    def _serve_next(self) -> None:
+        self._soon = None
+        self._serve()
 
     def _ticket(self, tokens: float, now_s: float) -> Ticket:
         self._requests.spend(1.0, now_s)
