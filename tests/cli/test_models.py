@@ -203,6 +203,12 @@ def test_an_empty_address_is_not_taken_for_openais_own() -> None:
     assert "the base URL is empty" in shown
 
 
+def test_address_prices_and_budget_are_all_told_at_once() -> None:
+    code, shown = _run("--base-url", "notaurl", "--prices", "no.toml", "--budget-usd", "-3")
+    assert code == 2, shown
+    assert all(wrong in shown for wrong in ("notaurl", "no.toml", "-3.0"))
+
+
 def test_a_key_is_written_nowhere(tmp_path: Path) -> None:
     behaviour = Behaviour(answer=sober, script=("ok",) * 20 + ("401",) * 400)
     with StubServer(behaviour) as server:

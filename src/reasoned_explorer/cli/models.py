@@ -4,12 +4,14 @@ import json
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from reasoned_explorer.calls.budget import Budget, faults_of_budget
 from reasoned_explorer.calls.cache import AnswerCache
 from reasoned_explorer.calls.chat import is_model_name
+from reasoned_explorer.calls.endpoint import endpoint_at
 from reasoned_explorer.calls.prices import read_prices
 from reasoned_explorer.calls.tape import TapePlayer
 from reasoned_explorer.cli.answers import complain
@@ -53,6 +55,12 @@ class ModelOptions:
             *_recording_faults(self.record, self.replay, self.resume),
             *faults_of_budget(self.budget_usd, self.budget_minutes),
         ]
+        found = Gathering()
+        if self.prices is not None and called:
+            found.check(partial(read_prices, self.prices))
+        if self.base_url is not None and called and self.replay is None:
+            found.check(partial(endpoint_at, self.base_url, key_variable=self.key_variable))
+        faults += found.faults
         if self.sample_anew and self.cache is None:
             faults.append(Fault("--sample-anew without --cache", "a cache to leave aside", "name one, or leave it out"))
         if not called:
