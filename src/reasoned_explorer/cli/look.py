@@ -219,7 +219,7 @@ def look_from_options(options: LookOptions) -> None:
     if order.kind == "--contact-sheet":
         from reasoned_explorer.rendering.contact_sheet import contact_sheet
 
-        make_ready(stage)
+        _make_ready(stage)
         stage("the classes")
         colour = contact_sheet(conditions=conditions_named(options.conditions))
         write_together(files_of(options.out, colour))
@@ -265,7 +265,7 @@ def _drawn(order: _Order, world: World, pose: Pose, stage: Callable[[str], None]
     stage("what things look like")
     scene = Scene.of(world, on_progress=lambda what: stage(f"  {what}"))
     stop_if_asked()
-    make_ready(stage)
+    _make_ready(stage)
     stage("light and shadow")
     if order.kind == "--top-down":
         from reasoned_explorer.rendering.overhead import overhead
@@ -288,6 +288,15 @@ def _drawn(order: _Order, world: World, pose: Pose, stage: Callable[[str], None]
             scene,
         )
     return _around(order, Renderer(scene, conditions), pose), False, scene
+
+
+def _make_ready(stage: Callable[[str], None]) -> None:
+    """Return when all is there that no scene is needed for; what needs no kernels comes first, beside those at work."""
+    from reasoned_explorer.rendering.mipmaps import material_textures
+
+    stage("textures")
+    material_textures()
+    make_ready(stage)
 
 
 def _around(order: _Order, renderer: "Renderer", pose: Pose) -> "Picture":

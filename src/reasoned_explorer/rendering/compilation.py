@@ -17,7 +17,7 @@ from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.mesh import Mesh, Model
 from reasoned_explorer.rendering.mipmaps import ground_looks_of, surfaces_of, textures_of
 from reasoned_explorer.rendering.projection import projection_of
-from reasoned_explorer.rendering.raster_kernels import SKY, draw, read_out
+from reasoned_explorer.rendering.raster_kernels import SKY, draw, gather, read_out
 from reasoned_explorer.rendering.readiness import compile_missing, telling
 from reasoned_explorer.rendering.room import Room, new_canvas
 from reasoned_explorer.rendering.scene import FIRST_BUILDING_ID, Placed, Scene
@@ -53,9 +53,13 @@ def _scene() -> Scene:
     return Scene.of_things([thing], ground, np.array([0, 1, 2], np.uint8))
 
 
+def _compile_gathering(scene: Scene) -> None:
+    gather(scene.library, scene.instances, scene.cells, _VIEW, False, Room(scene, 1).scratch)  # noqa: FBT003 - a kernel
+
+
 def _compile_drawing(scene: Scene) -> None:
     canvas, room = new_canvas(_SIDE, _SIDE), Room(scene, 1)
-    draw(scene.library, scene.instances, scene.cells, _VIEW, 1.0, False, canvas, room.scratch)  # noqa: FBT003 - a kernel
+    draw(scene.library, scene.instances, 0, _VIEW, 1.0, False, canvas, room.scratch)  # noqa: FBT003 - a kernel
 
 
 def _compile_reading(scene: Scene) -> None:
@@ -97,6 +101,7 @@ def _compile_shadows(scene: Scene) -> None:
 
 _PARTS: Mapping[str, Callable[[Scene], None]] = {
     "drawing": _compile_drawing,
+    "gathering": _compile_gathering,
     "reading": _compile_reading,
     "shading": _compile_shading,
     "shadows": _compile_shadows,

@@ -370,11 +370,20 @@ def _distance(balls: Floats, i: int, eye: Floats) -> float:
     return math.sqrt(x * x + y * y + z * z)
 
 
-@part
-def _collect(
+@kernel
+def gather(
     library: Library, instances: Instances, cells: Cells, view: Projection, everything: bool, scratch: Scratch
 ) -> int:
-    """Set the candidates: what may be in the picture. Returns how many."""
+    """Set the candidates: what may be in the picture, roughly from near to far. Returns how many.
+
+    Args:
+        library: Models.
+        instances: Where they stand.
+        cells: A grid over them.
+        view: The camera.
+        everything: Whether all counts that is in the picture, however small.
+        scratch: Set: ``candidates``, ``nearest``, ``rectangles`` and ``ordered``.
+    """
     balls, prototypes, boxes = instances.balls, instances.prototypes, library.boxes
     starts, members, cell_balls = cells.starts, cells.members, cells.balls
     candidates, nearest, rectangles, matrix = scratch.candidates, scratch.nearest, scratch.rectangles, scratch.matrix
@@ -398,6 +407,7 @@ def _collect(
                 candidates[count] = i
                 nearest[count] = near
                 count += 1
+    _order(scratch, count)
     return count
 
 
@@ -422,7 +432,7 @@ def _order(scratch: Scratch, count: int) -> None:
 def draw(
     library: Library,
     instances: Instances,
-    cells: Cells,
+    count: int,
     view: Projection,
     density: float,
     everything: bool,
@@ -434,12 +444,12 @@ def draw(
     Args:
         library: Models.
         instances: Where they stand.
-        cells: A grid over them.
+        count: Of the candidates, as `gather` returns it.
         view: The camera.
         density: Triangles for each pixel at most, where a model has levels to choose from.
         everything: Draw all, at full detail, whether it is hidden or not: a reference that is slow.
         canvas: Set.
-        scratch: Room; its ``levels`` say what was drawn.
+        scratch: As `gather` leaves it; its ``levels`` say afterwards what was drawn.
     """
     _fill_background(view, canvas)
     farthest, stale = canvas.farthest, canvas.stale
@@ -450,8 +460,6 @@ def draw(
             stale[row, column] = 1
     for i in range(levels.shape[0]):
         levels[i] = -1
-    count = _collect(library, instances, cells, view, everything, scratch)
-    _order(scratch, count)
     pixels = view.focal / view.samples
     for turn in range(count):
         k = scratch.ordered[turn]

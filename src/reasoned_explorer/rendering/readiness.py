@@ -27,7 +27,7 @@ from reasoned_explorer.rendering.cache import cache_folder, processor
 #: Told, now and then, what takes long.
 Progress = Callable[[str], None]
 #: What can be compiled by itself; what takes longest first.
-PARTS: tuple[str, ...] = ("shading", "drawing", "reading", "shadows")
+PARTS: tuple[str, ...] = ("shading", "drawing", "gathering", "shadows", "reading")
 #: Roughly how many functions there are; only for people who wait.
 FUNCTIONS = 56
 _FIRST_TIME = "compiling the renderer, the first time only"
@@ -166,8 +166,7 @@ class Work:
             while left := [part for part in left if not is_kept(part)]:
                 done = compile_missing(left, self._compile_part)
                 left = [part for part in left if part not in done]
-                if not done:
-                    self._listen(on_progress, wait_s=0.1)
+                self._listen(on_progress, wait_s=0.0 if done else 0.1)
         self._is_done = True
 
     def _listen(self, on_progress: Progress, wait_s: float = 0.0) -> None:

@@ -12,7 +12,7 @@ from reasoned_explorer.rendering.conditions import Conditions
 from reasoned_explorer.rendering.light import developing_curve, light_of, sun_direction
 from reasoned_explorer.rendering.mipmaps import ground_looks_of, material_textures, surfaces_of
 from reasoned_explorer.rendering.projection import Projection, projection_of
-from reasoned_explorer.rendering.raster_kernels import Canvas, draw, read_out
+from reasoned_explorer.rendering.raster_kernels import Canvas, draw, gather, read_out
 from reasoned_explorer.rendering.readiness import Progress, make_ready
 from reasoned_explorer.rendering.room import Room, new_canvas
 from reasoned_explorer.rendering.scene import Scene
@@ -107,8 +107,9 @@ class Renderer:
 
     def _drawn(self, view: Projection, *, everything: bool = False) -> Canvas:
         scene = self.scene
-        canvas = self._canvas(view)
-        draw(scene.library, scene.instances, scene.cells, view, DENSITY, everything, canvas, self._room().scratch)
+        canvas, scratch = self._canvas(view), self._room().scratch
+        count = gather(scene.library, scene.instances, scene.cells, view, everything, scratch)
+        draw(scene.library, scene.instances, count, view, DENSITY, everything, canvas, scratch)
         return canvas
 
     def _read(self, view: Projection, canvas: Canvas, camera: Camera) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
