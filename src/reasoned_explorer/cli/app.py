@@ -11,6 +11,7 @@ from reasoned_explorer.cli.bench_app import add_commands
 from reasoned_explorer.cli.look_app import add_look
 from reasoned_explorer.cli.minds_app import minds_app
 from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices, SampleAnew, Yes
+from reasoned_explorer.cli.serve_app import add_serve
 from reasoned_explorer.cli.worlds_app import worlds_app
 
 app = typer.Typer(
@@ -24,6 +25,7 @@ app.add_typer(worlds_app, name="worlds")
 app.add_typer(minds_app, name="minds")
 add_commands(app)
 add_look(app)
+add_serve(app)
 
 
 def _version(*, value: bool) -> None:
@@ -72,7 +74,9 @@ def run(
     evaluator: Annotated[str | None, typer.Option(help="Who scores, if not --minds.")] = None,
     checker: Annotated[str | None, typer.Option(help="Who notices the goal, if not --minds.")] = None,
     captioner: Annotated[str, typer.Option(help="Who says what is seen; see rex names.")] = "noisy",
-    vehicle: Annotated[str, typer.Option(help="A vehicle profile; see rex names.")] = "drone",
+    vehicle: Annotated[
+        str, typer.Option(help="A vehicle profile (see rex names), or where a vehicle is reached: airsim://HOST:41451.")
+    ] = "drone",
     latency: Annotated[
         str, typer.Option(help="How long modelled calls take: gpt-2023, gpt-fast, instant, or seconds: 0.8s.")
     ] = "gpt-2023",

@@ -1,5 +1,6 @@
 """``rex run``."""
 
+import asyncio
 import math
 import re
 from contextlib import suppress
@@ -18,13 +19,16 @@ from reasoned_explorer.evaluation.methods import BOUND_METHODS
 from reasoned_explorer.evaluation.mission import Mission, MissionResult
 from reasoned_explorer.evaluation.mission_settings import MissionSettings, errors_of, models_of
 from reasoned_explorer.evaluation.picture_folder import PICTURES_NAME
+from reasoned_explorer.evaluation.vehicle_address import VehicleAddress, start_at, vehicle_address
 from reasoned_explorer.exploration.settings import ExplorerSettings
-from reasoned_explorer.model import Fault, Gathering, RecordError, SettingsError
+from reasoned_explorer.geometry import Pose
+from reasoned_explorer.model import Fault, Gathering, InputError, RecordError, SettingsError
 from reasoned_explorer.model.checks import is_there
 from reasoned_explorer.model.record import MissionEnd, StepRecord
 from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.planning.setting_pairs import parse_planner_settings
 from reasoned_explorer.task.reading import read_goal
+from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.files import save_world
 from reasoned_explorer.world.opening import KEPT_SUFFIX, check_world_name, open_world_with_notes
 
@@ -66,6 +70,14 @@ class RunOptions:
     quiet: bool
     models: ModelOptions
 
+    @property
+    def profile(self) -> str:
+        """Name of the vehicle's profile, also where the vehicle is named by its address."""
+        with suppress(InputError):
+            address = vehicle_address(self.vehicle)
+            return self.vehicle if address is None else address.profile
+        return MissionSettings().vehicle  # what is wrong with the address is told by itself
+
     def settings(self, found: Gathering) -> MissionSettings:
         """Return the mission's settings; what is wrong with them is kept in ``found``, defaults in its stead."""
         explorer = found.take(self._explorer, ExplorerSettings())
@@ -82,7 +94,7 @@ class RunOptions:
             evaluator=self.evaluator,
             checker=self.checker,
             captioner=self.captioner,
-            vehicle=self.vehicle,
+            vehicle=self.profile,
             latency=self.latency,
             explorer=explorer,
             success_radius_m=self.radius_m,
@@ -124,6 +136,7 @@ class RunOptions:
         found.check(lambda: check_world_name(self.world, seed=seed, bbox=bbox))
         found.check(lambda: check_start_form(self.start))
         settings = self.settings(found)
+        found.check(lambda: vehicle_address(self.vehicle))
         folder = found.take(lambda: _folder(self), Path())
         found.finish("mission")
         return settings, bbox, folder
@@ -142,13 +155,15 @@ def run_from_options(options: RunOptions) -> None:
     stop_if_asked()
     desk = options.models.desk()
     options.models.agree(desk, settings.captioner, [world.name] if world.origin is not None else [])
+    atlas, address = Atlas(world), vehicle_address(options.vehicle)
     mission = Mission(
         options.goal,
-        world,
+        atlas,
         settings,
-        start=parse_start(options.start, world),
+        start=_start(options, atlas, address),
         desk=desk,
         pictures=folder / PICTURES_NAME if options.images else None,
+        address=address,
     )
     stop_if_asked()
     if not options.quiet:
@@ -173,6 +188,14 @@ def run_from_options(options: RunOptions) -> None:
     console.print(f"kept in {folder}", markup=False, soft_wrap=True)
     options.models.say_how_to_go_on(desk, folder)
     raise typer.Exit(_exit_code(result))
+
+
+def _start(options: RunOptions, atlas: Atlas, address: VehicleAddress | None) -> Pose | None:
+    """Return where the mission begins: as typed, or where the vehicle at an address stands; None for a random start."""
+    start = parse_start(options.start, atlas.world)
+    if start is not None or address is None:
+        return start
+    return start_at(asyncio.run(address.place()), atlas.digest, address)
 
 
 def _kernels_are_compiled() -> bool:

@@ -22,6 +22,7 @@ from reasoned_explorer.evaluation.record_file import RecordWriter
 from reasoned_explorer.evaluation.scoring import MissionScore, outcome_of, score
 from reasoned_explorer.evaluation.track import looks_of, track_of
 from reasoned_explorer.evaluation.truth import OracleTruth
+from reasoned_explorer.evaluation.vehicle_address import VehicleAddress
 from reasoned_explorer.exploration.explorer import Exploration, Explorer, Parts
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.minds.context import MindContext, Minds
@@ -57,6 +58,7 @@ from reasoned_explorer.task.reading import read_goal
 from reasoned_explorer.task.sampling import OutOfRangeError, SamplingSettings, sample_start, settle_for_a_start
 from reasoned_explorer.vehicles import VehicleProfile
 from reasoned_explorer.vehicles.registry import vehicle_profile
+from reasoned_explorer.vehicles.vehicle import Vehicle
 from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.geodesic import Traveller
 from reasoned_explorer.world.world import World
@@ -107,6 +109,7 @@ class Mission:
         judge: A judge of this goal, world, vehicle and success radius from an earlier mission, to share its work with.
         desk: Makes the callers of models; None where the settings name none, or for one without cache, tape and budget.
         pictures: Folder in which the pictures of all views are kept; None keeps none.
+        address: Of a vehicle outside of this process that stands at the start; None for the embedded simulator's.
 
     Raises:
         GoalError: If the goal cannot be understood.
@@ -129,6 +132,7 @@ class Mission:
         judge: Judge | None = None,
         desk: ModelDesk | None = None,
         pictures: Path | None = None,
+        address: VehicleAddress | None = None,
     ) -> None:
         _check_arguments(world, settings, start)
         self.settings = settings if settings is not None else MissionSettings()
@@ -144,7 +148,7 @@ class Mission:
         self.start = self._start(start, self.judge.traveller)
         stop_if_asked()
         self.clock = CLOCKS[self.settings.clock]()
-        self._desk, self._pictures = desk, pictures
+        self._desk, self._pictures, self._address = desk, pictures, address
         # Privileged minds and the guide alone may read the truth; they are the only ones that ask for it.
         truth = OracleTruth(self.atlas, self.judge, self.profile, self.settings.explorer)
         self.explorer: Explorer | Guide
@@ -294,7 +298,14 @@ class Mission:
         parts = Parts(vehicle, captioner, planner, minds.checker, self.clock, ledger, must_end)
         return Explorer(parts, explorer)
 
-    def _vehicle(self) -> SimulatedVehicle:
+    @property
+    def keeps_pictures(self) -> bool:
+        """Whether the pictures of all views are kept."""
+        return self._pictures is not None
+
+    def _vehicle(self) -> Vehicle:
+        if self._address is not None:
+            return self._address.vehicle(self)
         settings, painter = self.settings, None
         if self._pictures is not None or is_model_name(settings.captioner):
             painter = Painter(self.atlas, side_px=settings.picture_px, conditions=settings.conditions)
@@ -336,7 +347,7 @@ class Mission:
             reference_way=tuple((round(float(x), 2), round(float(y), 2)) for x, y in way) if way is not None else (),
             success_radius_m=self.settings.success_radius_m,
             understood=tuple(self.spec.describe()),
-            notes=self._notes,
+            notes=self._notes if self._address is None else (*self._notes, f"vehicle at {self._address}"),
             origin_deg=None if world.origin is None else (world.origin.lat_deg, world.origin.lon_deg),
         )
 

@@ -11,6 +11,7 @@ from reasoned_explorer.serving.airsim.arguments import LoosePose, Name, Step, ch
 from reasoned_explorer.serving.airsim.simulator import Simulator
 from reasoned_explorer.serving.msgpack_rpc import Method, MethodError
 from reasoned_explorer.vehicles.airsim.conventions import Wire, attitude
+from reasoned_explorer.vehicles.airsim.place import PLACE_METHOD
 
 #: What the distance sensor can measure, metres (AirSim's defaults).
 _NEAREST_M, _FARTHEST_M = 0.2, 40.0
@@ -46,6 +47,7 @@ class StateMethods:
             "simListVehicles": lambda: [sim.settings.vehicle_name],
             "getSettingsString": lambda: sim.settings.model_dump_json(),  # noqa: PLW0108 - takes no arguments
             "getHomeGeoPoint": self.home_geo_point,
+            PLACE_METHOD: self.place,
             "simSetVehiclePose": self.set_vehicle_pose,
             "simGetVehiclePose": self.vehicle_pose,
             "simGetGroundTruthKinematics": self.true_kinematics,
@@ -59,6 +61,17 @@ class StateMethods:
             "getDistanceSensorData": self.distance,
         }
         return {name: checked(name, method) for name, method in asked.items()}
+
+    def place(self) -> dict[str, object]:
+        """Return which world this is and where the drone stood at first, which no other simulator tells."""
+        start, atlas = self._sim.drone.start, self._sim.atlas
+        return {
+            "world": atlas.world.name,
+            "digest": atlas.digest,
+            "x_m": start.x_m,
+            "y_m": start.y_m,
+            "heading_rad": start.heading_rad,
+        }
 
     def pause(self, is_paused: bool) -> None:
         """Hold time, or let it go."""

@@ -1,0 +1,119 @@
+"""`rex serve` in a process of its own, and `rex run` against it."""
+
+import json
+import re
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from reasoned_explorer.cli.app import app
+from reasoned_explorer.cli.serve import free_spot
+from reasoned_explorer.simulation.vehicle import check_start
+from reasoned_explorer.vehicles.registry import vehicle_profile
+from reasoned_explorer.world.atlas import Atlas
+from reasoned_explorer.world.opening import open_world
+
+pytest.importorskip("msgpack", reason="what AirSim's wire is spoken with is not installed")
+
+WORLD = ["--world", "plaza:3@200"]
+MISSION = ["Find me a fire hydrant", *WORLD, "--seed", "5", "--max-steps", "3", "--no-map"]
+
+
+@pytest.fixture(autouse=True)
+def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def _rex(*arguments: str) -> tuple[int, str]:
+    result = CliRunner().invoke(app, list(arguments))
+    return result.exit_code, result.output + (result.stderr if result.stderr_bytes else "")
+
+
+@contextmanager
+def _serving(*options: str) -> Iterator[tuple["subprocess.Popen[str]", str]]:
+    """Serve on a free port until the block ends; gives the process and the address."""
+    command = [sys.executable, "-m", "reasoned_explorer", "serve", "--as", "airsim", "--port", "0", *options]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+        assert process.stdout is not None
+        try:
+            for line in process.stdout:
+                if found := re.search(r" at (127\.0\.0\.1:\d+);", line):
+                    yield process, f"airsim://{found[1]}"
+                    break
+            else:
+                pytest.fail("it does not serve")
+        finally:
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+            process.communicate(timeout=60)
+
+
+def _steps(folder: str) -> list[dict[str, object]]:
+    lines = [json.loads(line) for line in (Path(folder) / "record.jsonl").read_text().splitlines()]
+    return [line["step"] for line in lines if "step" in line]
+
+
+def test_a_mission_over_the_wire_is_the_mission_in_process() -> None:
+    with _serving(*WORLD, "--seed", "5", "--speed", "max") as (process, address):
+        code, shown = _rex("run", *MISSION, "--vehicle", address, "--out", "wire")
+        assert code == 1, shown
+        assert f"vehicle at {address}" in (Path("wire") / "record.jsonl").read_text()
+        process.send_signal(signal.SIGINT)
+        assert process.wait(60) == 130
+    header = json.loads((Path("wire") / "record.jsonl").read_text().splitlines()[0])["header"]
+    x_m, y_m = header["start"][:2]
+    code, shown = _rex("run", *MISSION, "--start", f"{x_m},{y_m},0", "--out", "here")
+    assert code == 1, shown
+    wire, here = _steps("wire"), _steps("here")
+    assert len(wire) == 3
+    assert [step["choice"] for step in wire] == [step["choice"] for step in here]
+
+
+def test_a_vehicle_in_another_world_is_refused() -> None:
+    with _serving(*WORLD, "--speed", "max") as (_, address):
+        code, shown = _rex("run", "Find me a bench", "--world", "plaza:4@200", "--vehicle", address)
+    assert code == 2, shown
+    assert "another world, plaza:3@200" in shown
+    assert not list(Path().iterdir())
+
+
+def test_a_vehicle_that_is_not_there_is_a_part_that_failed() -> None:
+    with socket.socket() as unused:
+        unused.bind(("127.0.0.1", 0))
+        port = unused.getsockname()[1]
+        code, shown = _rex("run", "Find me a bench", *WORLD, "--vehicle", f"airsim://127.0.0.1:{port}")
+    assert code == 3, shown
+    assert "no link to" in shown
+
+
+def test_all_that_is_wrong_is_told_at_once() -> None:
+    wrong = ["--as", "foo", "--world", "nowhere", "--port", "99999", "--speed", "x", "--noise", "y", "--vehicle", "z"]
+    code, shown = _rex("serve", *wrong)
+    assert code == 2, shown
+    assert "6 faults" in shown
+    assert all(f"'{name}'" in shown for name in ("foo", "nowhere", "x", "y", "z"))
+    assert "99999" in shown
+
+
+def test_a_port_that_is_taken_is_told() -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        code, shown = _rex("serve", "--as", "airsim", *WORLD, "--port", str(port))
+    assert code == 2, shown
+    assert f"127.0.0.1:{port} cannot be listened on" in shown
+
+
+def test_without_a_start_it_stands_at_a_free_spot_near_the_middle() -> None:
+    atlas, profile = Atlas(open_world("downtown:7@300")), vehicle_profile("drone")
+    spot = free_spot(atlas, profile)
+    check_start(atlas, profile, spot)
+    assert abs(spot.x_m) + abs(spot.y_m) < 300.0

@@ -1,0 +1,72 @@
+"""Vehicles that are named by where they are reached."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from reasoned_explorer.evaluation.vehicle_address import VehicleAddress, start_at, vehicle_address
+from reasoned_explorer.geometry import Pose
+from reasoned_explorer.model import InputError, SettingsError
+from reasoned_explorer.vehicles.airsim.place import ServedPlace
+
+HERE = VehicleAddress("airsim", "127.0.0.1", 41451, "drone")
+
+
+@pytest.mark.parametrize(
+    ("text", "address"),
+    [
+        ("airsim://127.0.0.1", HERE),
+        ("airsim://127.0.0.1:41451/", HERE),
+        (" AirSim://127.0.0.1 ", HERE),
+        ("airsim://sim.lan:9", VehicleAddress("airsim", "sim.lan", 9, "drone")),
+        ("airsim://[::1]:9", VehicleAddress("airsim", "::1", 9, "drone")),
+        ("drone-authors@airsim://127.0.0.1", VehicleAddress("airsim", "127.0.0.1", 41451, "drone-authors")),
+    ],
+)
+def test_an_address_is_read(text: str, address: VehicleAddress) -> None:
+    assert vehicle_address(text) == address
+    assert vehicle_address(f"{address.profile}@{address}") == address
+
+
+@pytest.mark.parametrize("name", ["drone", "go1-authors", "", "airsim"])
+def test_the_name_of_a_profile_is_none(name: str) -> None:
+    assert vehicle_address(name) is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "airsim://",
+        "airsim://host:0",
+        "airsim://host:70000",
+        "airsim://host:x",
+        "airsim://host/path",
+        "airsim://user@host",
+        "airsim://host?x=1",
+        "ship://host",
+        "go1@airsim://host",
+        "nobody@airsim://host",
+        "airsim://[::1",
+    ],
+)
+def test_what_is_none_is_told(text: str) -> None:
+    with pytest.raises(InputError):
+        vehicle_address(text)
+
+
+@given(st.text(max_size=40))
+def test_any_text_is_an_address_or_none_or_refused(text: str) -> None:
+    try:
+        vehicle_address(text)
+        vehicle_address(f"airsim://{text}")
+    except InputError:
+        pass
+
+
+def test_a_mission_begins_where_the_vehicle_stands_in_its_world() -> None:
+    place = ServedPlace("plaza:3@200", "abc", Pose(1.0, 2.0, 0.0, 3.0))
+    assert start_at(place, "abc", HERE) == place.start
+    with pytest.raises(SettingsError, match="another world, plaza:3@200"):
+        start_at(place, "def", HERE)
+    with pytest.raises(SettingsError, match="--start"):
+        start_at(None, "abc", HERE)
