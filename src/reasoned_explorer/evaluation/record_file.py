@@ -62,7 +62,7 @@ class RecordWriter:
 
     def step(self, step: StepRecord) -> None:
         """Write one step."""
-        self._line(b"step", _STEP.dump_json(step))
+        self._line(b"step", _step_bytes(step))
         self._whole_steps += 1
 
     def summary(self, summary: MissionSummary) -> None:
@@ -120,10 +120,15 @@ def read_record(folder: Path | str) -> EpisodeRecord:
 def record_bytes(record: EpisodeRecord) -> bytes:
     """Return a record as `RecordWriter` writes it, to the byte."""
     lines = [b'{"header":' + _HEADER.dump_json(record.header) + b"}\n"]
-    lines += [b'{"step":' + _STEP.dump_json(step) + b"}\n" for step in record.steps]
+    lines += [b'{"step":' + _step_bytes(step) + b"}\n" for step in record.steps]
     if record.summary is not None:
         lines.append(b'{"summary":' + _SUMMARY.dump_json(record.summary) + b"}\n")
     return b"".join(lines)
+
+
+def _step_bytes(step: StepRecord) -> bytes:
+    # Left out where there are none: missions without a guard write what they always wrote.
+    return _STEP.dump_json(step, exclude=None if step.interventions else {"interventions"})
 
 
 def parse_record(data: bytes, path: Path) -> EpisodeRecord:

@@ -10,6 +10,7 @@ from reasoned_explorer.model.record import (
     CallRecord,
     ChoiceRecord,
     FrontierRecord,
+    InterventionRecord,
     LegRecord,
     NodeRecord,
     StepRecord,
@@ -82,7 +83,15 @@ class StepDraft:
     notes: list[str] = field(default_factory=list)
     faults: int = 0
 
-    def freeze(self, *, ended_s: float, ct_s: float, tt_s: float, calls: Sequence[CallRecord]) -> StepRecord:
+    def freeze(
+        self,
+        *,
+        ended_s: float,
+        ct_s: float,
+        tt_s: float,
+        calls: Sequence[CallRecord],
+        interventions: Sequence[InterventionRecord] = (),
+    ) -> StepRecord:
         """Return the record of the step. Numbers are rounded to what is meaningful, so that records stay small."""
         return StepRecord(
             step=self.step,
@@ -103,6 +112,7 @@ class StepDraft:
             ct_s=round(ct_s, 6),
             tt_s=round(tt_s, 6),
             notes=tuple(self.notes),
+            interventions=tuple(interventions),
         )
 
 

@@ -14,7 +14,7 @@ from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose, normalise_heading_rad
 from reasoned_explorer.minds.mind import GoalChecker
 from reasoned_explorer.model import Goal, LegOutcome, PartError, Scene, Undescribed, Verdict, View
-from reasoned_explorer.model.record import MissionEnd, StepRecord
+from reasoned_explorer.model.record import InterventionRecord, MissionEnd, StepRecord
 from reasoned_explorer.perception import Captioner
 from reasoned_explorer.planning import FrontierScore, Plan, Planner
 from reasoned_explorer.vehicles import Vehicle
@@ -34,8 +34,9 @@ class Parts:
         checker: Notices the goal.
         clock: Mission time.
         ledger: Where the parts write their calls.
-        must_end: Tells how the mission must end now, and why, where no model can be asked any more: the run's budget is
-            spent, say. Asked after each look.
+        must_end: Tells how the mission must end now, and why, where no model can be asked any more or the vehicle's
+            guard lets it go nowhere: the run's budget is spent, say. Asked after each look and after each travel.
+        take_interventions: Returns what the vehicle's guard did since it was last asked.
     """
 
     vehicle: Vehicle
@@ -45,6 +46,7 @@ class Parts:
     clock: Clock
     ledger: Ledger
     must_end: Callable[[], tuple[MissionEnd, str] | None] = lambda: None
+    take_interventions: Callable[[], Sequence[InterventionRecord]] = lambda: ()
 
 
 @dataclass(slots=True)
@@ -138,7 +140,13 @@ class Explorer:
         calls = self.parts.ledger.since(self._calls_kept)
         self._calls_kept += len(calls)
         kept = [call.rounded() for call in calls]
-        record = step.freeze(ended_s=self.parts.clock.now_s(), ct_s=self._ct_s, tt_s=self._tt_s, calls=kept)
+        record = step.freeze(
+            ended_s=self.parts.clock.now_s(),
+            ct_s=self._ct_s,
+            tt_s=self._tt_s,
+            calls=kept,
+            interventions=self.parts.take_interventions(),
+        )
         if self.on_step is not None:
             self.on_step(record)
 
@@ -155,7 +163,7 @@ class Explorer:
         if step.choice is None:
             return await self._look_elsewhere(step)
         await self._travel(step, step.choice)
-        return self._time_over() if self._time_is_over() else None
+        return self._time_over() if self._time_is_over() else self.parts.must_end()
 
     def _time_is_over(self) -> bool:
         return self.parts.clock.now_s() >= self.settings.t_max_s

@@ -150,6 +150,23 @@ class LegRecord:
 
 
 @dataclass(frozen=True, slots=True)
+class InterventionRecord:
+    """Once that a vehicle's guard stopped it, cut a command short or refused one.
+
+    Attributes:
+        t_s: Mission time, seconds.
+        cause: Of what kind the reason is (`vehicles.safety.cause`).
+        detail: The reason in words.
+        done: What was done about it.
+    """
+
+    t_s: float
+    cause: str
+    detail: str
+    done: str
+
+
+@dataclass(frozen=True, slots=True)
 class CallRecord:
     """One call of a model.
 
@@ -219,6 +236,7 @@ class StepRecord:
         ct_s: CT since the mission's start.
         tt_s: TT since the mission's start, looking included.
         notes: What else happened, for people.
+        interventions: What the vehicle's guard did, if it has one.
     """
 
     step: int
@@ -239,6 +257,7 @@ class StepRecord:
     ct_s: float = 0.0
     tt_s: float = 0.0
     notes: tuple[str, ...] = ()
+    interventions: tuple[InterventionRecord, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

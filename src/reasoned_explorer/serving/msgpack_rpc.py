@@ -60,9 +60,13 @@ class RpcServer:
         server, self._server = self._server, None
         if server is not None:
             server.close()
-            for connection in tuple(self._connections):
-                connection.abort()
+            self.hang_up()
             await server.wait_closed()
+
+    def hang_up(self) -> None:
+        """End all connections, and go on listening."""
+        for connection in tuple(self._connections):
+            connection.abort()
 
     def answer(self, method: object, arguments: object) -> Any:
         """Return what a method returns.

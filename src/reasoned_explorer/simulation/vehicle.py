@@ -3,6 +3,7 @@
 import asyncio
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -23,10 +24,13 @@ from reasoned_explorer.model import (
     View,
 )
 from reasoned_explorer.model.checks import is_within
+from reasoned_explorer.simulation.mishaps import Mishap, MishapKind, Mishaps
 from reasoned_explorer.simulation.motion import NO_DISCS, NO_WALLS, Body, End, Ground, Motion
 from reasoned_explorer.simulation.sensors import SensorNoise, sensor_noise
 from reasoned_explorer.simulation.sighting import ViewContent
+from reasoned_explorer.simulation.under_way import FAILSAFE_S, State, UnderWay, told
 from reasoned_explorer.vehicles.profile import VehicleProfile
+from reasoned_explorer.vehicles.safety.telemetry import Telemetry
 from reasoned_explorer.vehicles.vehicle import Vehicle
 from reasoned_explorer.world.taxonomy import IMPASSABLE_ON_FOOT
 from reasoned_explorer.world.taxonomy import Ground as GroundKind
@@ -119,6 +123,8 @@ class SimulatedVehicle(Vehicle):
         seed: Of the mission; all draws of noise are keyed by it.
         noise: How its sensors err, or the name of a preset.
         faults: For tests: legs (counted from 0) at which the link fails, each with the reason.
+        mishaps: What befalls it, in mission seconds. They change what it tells of itself and what it obeys, not how it
+            steers on a leg that is under way. Half a second after its link is lost it stands, by a failsafe of its own.
 
     Raises:
         StartError: If no mission can begin at the start.
@@ -137,6 +143,7 @@ class SimulatedVehicle(Vehicle):
         seed: int,
         noise: SensorNoise | str = "rtk-fixed",
         faults: Mapping[int, str] | None = None,
+        mishaps: Sequence[Mishap] = (),
     ) -> None:
         check_start(atlas, profile, start)
         self.profile = profile
@@ -151,18 +158,29 @@ class SimulatedVehicle(Vehicle):
         self._legs = 0
         self._looks = 0
         self._idle_since_s: float | None = None
+        self.mishaps = Mishaps(tuple(mishaps))
+        self._under_way: UnderWay | None = None
         #: The last leg; after a cancelled `go_to` the part of it that was travelled.
         self.last_leg: Leg | None = None
 
     @property
     def pose(self) -> Pose:
         """Where the filter believes the vehicle to be; the height is its camera's."""
-        return self._at_height(self._body.pose)
+        return self.mishaps.told(self._at_height(self._body.pose), self._clock.now_s())
 
     @property
     def true_pose(self) -> Pose:
         """Where it really is: for the simulator, the judge and pictures, never for the agent."""
         return self._at_height(self._body.true_pose)
+
+    def telemetry(self) -> Telemetry:
+        """Return what it tells of itself now, also on the way."""
+        now_s, going = self._clock.now_s(), self._under_way
+        state = State(self._at_height(self._body.pose)) if going is None else going.at(now_s)
+        return told(replace(state, pose=self._at_height(state.pose)), self.mishaps, now_s)
+
+    async def connect(self) -> None:
+        """Nothing: it looks as it stands."""
 
     async def look(self, headings_rad: Sequence[float]) -> Sequence[View]:
         """Take one view in each heading, in that order; keys are (legs so far, looks since the last leg, index).
@@ -171,12 +189,16 @@ class SimulatedVehicle(Vehicle):
 
         Raises:
             SettingsError: If a heading is not finite.
+            PartError: If its link is lost, or its camera silent (``mishaps``).
         """
         faults = [
             Fault(f"heading {heading}", "finite radians") for heading in headings_rad if not math.isfinite(heading)
         ]
         if faults:
             raise SettingsError("look", faults)
+        self._check_reached()
+        if self.mishaps.at(MishapKind.CAMERA_SILENCE, self._clock.now_s()):
+            raise PartError("camera", "no picture comes")
         self._pass_idle_time()
         order = self._turning_order(headings_rad)
         duration_s = self.profile.look_s
@@ -206,19 +228,26 @@ class SimulatedVehicle(Vehicle):
 
         Raises:
             SettingsError: If the target is not finite.
-            PartError: If this leg was to fail (``faults``).
+            PartError: If this leg was to fail (``faults``), or its link is lost (``mishaps``).
         """
         if not is_finite(target.x_m, target.y_m, target.heading_rad):
             raise SettingsError("go_to", [Fault(f"target {target}", "finite coordinates and heading")])
         number, self._legs, self._looks = self._legs, self._legs + 1, 0
         if number in self._faults:
             raise PartError("vehicle", self._faults[number])
+        self._check_reached()
         self._pass_idle_time()
         here = self._body.true_pose
         margin_m = _MARGIN_M + 4.0 * (self.noise.position_sigma_m + self.noise.wander_sigma_m)
         near = obstacles_on_leg(self._atlas, self.profile, here, target, margin_m=margin_m)
         motion_number, saved, started_s = self._next_motion(), self._body.save(), self._clock.now_s()
         motion = self._drive(target, motion_number, near)
+        alone_s = self.mishaps.next_s(MishapKind.LINK_LOSS, started_s) + FAILSAFE_S - started_s
+        is_lost = alone_s < motion.duration_s
+        if is_lost:
+            self._body.restore(saved)
+            motion = self._drive(target, motion_number, near, limit_s=alone_s)
+        self._under_way = UnderWay(started_s, motion, here, self._body)
         try:
             await self._clock.act(motion.duration_s)
         except asyncio.CancelledError:
@@ -229,8 +258,12 @@ class SimulatedVehicle(Vehicle):
             self.last_leg = self._leg(target, cut, near, started_s)
             self._idle_since_s = self._clock.now_s()
             raise
+        finally:
+            self._under_way = None
         self._idle_since_s = self._clock.now_s()
         self.last_leg = self._leg(target, motion, near, started_s)
+        if is_lost:
+            self._check_reached()
         return self.last_leg
 
     def _drive(self, target: Pose, number: int, near: "Obstacles | None", *, limit_s: float | None = None) -> Motion:
@@ -270,6 +303,15 @@ class SimulatedVehicle(Vehicle):
             End.TIME: (LegOutcome.STUCK, "not there in three times the time that it should take"),
             End.STUCK: (LegOutcome.STUCK, "no progress"),
         }[motion.end]
+
+    def _check_reached(self) -> None:
+        """Check that the machine hears what it is told.
+
+        Raises:
+            PartError: If its link is lost.
+        """
+        if self.mishaps.at(MishapKind.LINK_LOSS, self._clock.now_s()):
+            raise PartError("vehicle", "the link is lost")
 
     def _next_motion(self) -> int:
         self._motions += 1

@@ -6,7 +6,7 @@ from types import TracebackType
 from typing import Self
 
 from reasoned_explorer.geometry import Pose
-from reasoned_explorer.model import Leg, View
+from reasoned_explorer.model import Leg, PartError, View
 from reasoned_explorer.vehicles.profile import VehicleProfile
 
 
@@ -18,6 +18,14 @@ class Vehicle(ABC):
     """
 
     profile: VehicleProfile
+
+    async def connect(self) -> None:
+        """Make ready to look without moving: nothing is armed, nothing takes off. For dry runs, instead of `start`.
+
+        Raises:
+            PartError: If the machine cannot: by default none can.
+        """
+        raise PartError("vehicle", f"{self.profile.name} cannot look without being started; no dry run with it")
 
     async def start(self) -> None:  # noqa: B027 - most machines need nothing
         """Make ready to look and move."""

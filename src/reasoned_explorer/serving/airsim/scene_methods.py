@@ -14,6 +14,7 @@ from reasoned_explorer.serving.airsim.flight import State
 from reasoned_explorer.serving.airsim.simulator import Simulator
 from reasoned_explorer.serving.airsim.studio import Wanted
 from reasoned_explorer.serving.msgpack_rpc import Method, MethodError
+from reasoned_explorer.simulation.mishaps import MishapKind
 from reasoned_explorer.vehicles.airsim.conventions import Wire, attitude, triple
 from reasoned_explorer.vehicles.airsim.pictures import ImageType
 
@@ -71,8 +72,10 @@ class SceneMethods:
         del external
         sim = self._sim
         sim.check_name(vehicle_name)
-        wanted = [self._wanted(one) for one in requests]
         now_s = sim.now_s
+        if sim.mishaps.at(MishapKind.CAMERA_SILENCE, now_s):
+            raise MethodError("the camera gives no picture")
+        wanted = [self._wanted(one) for one in requests]
         body = sim.drone.look(now_s)
         taken = sim.studio.take(body, wanted)
         about = [self._about(one, request, body, now_s) for one, request in zip(wanted, requests, strict=True)]

@@ -1,7 +1,8 @@
 """The embedded simulator as a program that AirSim's clients can talk to."""
 
 import math
-from typing import TYPE_CHECKING, Self
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Self
 
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Fault, SettingsError
@@ -12,7 +13,8 @@ from reasoned_explorer.serving.airsim.scene_methods import SceneMethods
 from reasoned_explorer.serving.airsim.settings import AUTHORS_RIG, AirSimSettings
 from reasoned_explorer.serving.airsim.simulator import Simulator
 from reasoned_explorer.serving.airsim.state_methods import StateMethods
-from reasoned_explorer.serving.msgpack_rpc import RpcServer
+from reasoned_explorer.serving.msgpack_rpc import Method, MethodError, RpcServer
+from reasoned_explorer.simulation.mishaps import Mishap, MishapKind, Mishaps
 from reasoned_explorer.simulation.sensors import SensorNoise
 from reasoned_explorer.vehicles.profile import PROFILES, VehicleProfile
 
@@ -41,6 +43,8 @@ class AirSimServer:
         seed: Of all draws.
         generation: What the server says of its version; all clients are answered whatever it says.
         conditions: Time of day and weather of pictures.
+        mishaps: What befalls the drone, on the server's seconds, which begin with 0. Its link lost, it hovers, as
+            autopilots with a failsafe do (AirSim's own goes on with what it was told).
 
     Raises:
         SettingsError: If a setting is out of range.
@@ -61,6 +65,7 @@ class AirSimServer:
         seed: int = 0,
         generation: int = 1,
         conditions: str = "clear",
+        mishaps: Sequence[Mishap] = (),
     ) -> None:
         from reasoned_explorer.rendering.conditions import PRESETS
 
@@ -84,15 +89,32 @@ class AirSimServer:
             noise=noise,
             seed=seed,
             conditions=conditions,
+            mishaps=Mishaps(tuple(mishaps)),
         )
         tables = (
             StateMethods(self.simulator, generation).table(),
             FlightMethods(self.simulator).table(),
             SceneMethods(self.simulator).table(),
         )
-        self._rpc = RpcServer({name: method for table in tables for name, method in table.items()})
+        methods = {name: method for table in tables for name, method in table.items()}
+        if mishaps:
+            methods = {name: self._cut_off(method) for name, method in methods.items()}
+        self._rpc = RpcServer(methods)
         #: Where it listens; None before `start`.
         self.port: int | None = None
+
+    def _cut_off(self, method: Method) -> Method:
+        """Return a method that is not reached while the link is lost."""
+
+        def through(*arguments: Any) -> Any:
+            sim = self.simulator
+            if sim.mishaps.at(MishapKind.LINK_LOSS, sim.now_s):
+                sim.end_command()
+                self._rpc.hang_up()
+                raise MethodError("the link is lost")
+            return method(*arguments)
+
+        return through
 
     async def start(self, host: str = "127.0.0.1", port: int | None = None) -> int:
         """Listen; return the port.

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING
 
 from reasoned_explorer.geometry import GeoOrigin, Pose
 from reasoned_explorer.serving.airsim.drone import Drone
-from reasoned_explorer.serving.airsim.flight import Flight
+from reasoned_explorer.serving.airsim.flight import Flight, State
 from reasoned_explorer.serving.airsim.scenery import Scenery
 from reasoned_explorer.serving.airsim.settings import AirSimSettings
 from reasoned_explorer.serving.airsim.studio import Studio
 from reasoned_explorer.serving.airsim.timeline import Alarm, Timeline
 from reasoned_explorer.serving.msgpack_rpc import MethodError
+from reasoned_explorer.simulation.mishaps import Mishaps
 from reasoned_explorer.simulation.sensors import SensorNoise
 from reasoned_explorer.vehicles.airsim.conventions import HomeFrame, Wire
 from reasoned_explorer.vehicles.profile import VehicleProfile
@@ -32,6 +33,7 @@ class Simulator:
         noise: How the sensors err by which it steers.
         seed: Of all draws.
         conditions: Time of day and weather of pictures.
+        mishaps: What befalls the drone, on its own time.
 
     Raises:
         StartError: If the drone cannot stand at the start.
@@ -50,6 +52,7 @@ class Simulator:
         noise: SensorNoise | str,
         seed: int,
         conditions: str,
+        mishaps: Mishaps,
     ) -> None:
         self.atlas, self.settings = atlas, settings
         self.drone = Drone(atlas, profile, start, noise=noise, seed=seed)
@@ -57,6 +60,7 @@ class Simulator:
         self.timeline = Timeline(speed)
         self.scenery = Scenery(atlas)
         self.studio = Studio(atlas, self.scenery, settings, conditions)
+        self.mishaps = mishaps
         self.is_controlled = self.is_armed = False
         #: Up to when collisions have been asked about, the server's seconds.
         self.hits_told_s = -1.0
@@ -66,6 +70,13 @@ class Simulator:
     def now_s(self) -> float:
         """The time, seconds."""
         return self.timeline.now_s
+
+    def belief(self) -> State:
+        """Return where the drone says that it is."""
+        now_s = self.now_s
+        state = self.drone.belief(now_s)
+        told = self.mishaps.told(Pose(state.x_m, state.y_m, state.z_m, state.heading_rad), now_s)
+        return state._replace(x_m=told.x_m, heading_rad=told.heading_rad)
 
     def reset(self) -> None:
         """Begin anew; time goes on."""

@@ -10,6 +10,7 @@ from reasoned_explorer.serving.airsim import messages
 from reasoned_explorer.serving.airsim.arguments import LoosePose, Name, Step, checked
 from reasoned_explorer.serving.airsim.simulator import Simulator
 from reasoned_explorer.serving.msgpack_rpc import Method, MethodError
+from reasoned_explorer.simulation.mishaps import MishapKind
 from reasoned_explorer.vehicles.airsim.conventions import Wire, attitude
 from reasoned_explorer.vehicles.airsim.place import PLACE_METHOD
 
@@ -173,7 +174,7 @@ class StateMethods:
         collision = self._collision(vehicle_name)
         return {
             "collision": collision,
-            "kinematics_estimated": messages.kinematics(sim.home, sim.drone.belief(now_s)),
+            "kinematics_estimated": messages.kinematics(sim.home, sim.belief()),
             "gps_location": self._geo_point(now_s),
             "timestamp": messages.nanoseconds(now_s),
             "landed_state": 0 if sim.drone.is_landed(now_s) else 1,
@@ -207,7 +208,8 @@ class StateMethods:
         del gps_name
         self._sim.check_name(vehicle_name)
         now_s = self._sim.now_s
-        return messages.gps(self._geo_point(now_s), self._sim.drone.state(now_s), now_s)
+        heard_s = now_s - self._sim.mishaps.silent_s(MishapKind.POSITION_SILENCE, now_s)
+        return messages.gps(self._geo_point(now_s), self._sim.drone.state(now_s), heard_s)
 
     def distance(self, distance_sensor_name: Name = "", vehicle_name: Name = "") -> Wire:
         """Return how far it is straight ahead to something solid, without error."""

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reasoned_explorer.geometry import Pose
+from reasoned_explorer.model.checks import is_within
 from reasoned_explorer.model.errors import PartError
 from reasoned_explorer.vehicles.airsim import conventions as conv
 from reasoned_explorer.vehicles.airsim.pictures import ImageType, colour_of
@@ -159,6 +160,16 @@ class AirSimApi:
             lambda: Collision(told["has_collided"] is True, _seconds(told["time_stamp"]), str(told["object_name"])),
         )
 
+    async def fix_s(self) -> float | None:
+        """Return when the satellite receiver last had a position, the server's seconds; None where it has none."""
+        told = await self.client.call("getGpsData", "", self.name)
+        return _read("getGpsData", lambda: _seconds(told["time_stamp"]) if told["is_valid"] is True else None)
+
+    async def range_m(self, sensor: str) -> float:
+        """Return how far something stands before a distance sensor, metres."""
+        told = await self.client.call("getDistanceSensorData", sensor, self.name)
+        return _read("getDistanceSensorData", lambda: _metres(told["distance"]))
+
     # What it sees.
 
     async def shots(self, cameras: Sequence[str]) -> list[Shot]:
@@ -283,6 +294,12 @@ def _seconds(nanoseconds: object) -> float:
     if type(nanoseconds) is not int:
         raise ValueError(f"a time of {nanoseconds!r:.40}")
     return nanoseconds / 1e9
+
+
+def _metres(value: object) -> float:
+    if not is_within(value, 0.0):
+        raise ValueError(f"a distance of {value!r:.40}")
+    return float(value)  # type: ignore[arg-type]
 
 
 def _read(method: str, read: Callable[[], T]) -> T:

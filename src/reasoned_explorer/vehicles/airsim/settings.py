@@ -25,6 +25,8 @@ class DriverSettings:
         stuck_m: What counts as progress, metres.
         poll_s: How often to look how a leg goes, seconds.
         deadline_s: How long an answer may take, real seconds.
+        reads_gps: Whether to ask, on the way, for the age of the last fix; no more where the simulator has no receiver.
+        range_sensor: Name of a distance sensor that looks ahead, "" for the only one; None for none.
 
     Raises:
         SettingsError: If one is out of range.
@@ -42,6 +44,8 @@ class DriverSettings:
     stuck_m: float = 0.2
     poll_s: float = 0.25
     deadline_s: float = 10.0
+    reads_gps: bool = True
+    range_sensor: str | None = None
 
     def __post_init__(self) -> None:
         ranges = {

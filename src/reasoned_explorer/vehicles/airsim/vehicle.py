@@ -17,8 +17,10 @@ from reasoned_explorer.vehicles.airsim.conventions import HomeFrame
 from reasoned_explorer.vehicles.airsim.legs import LegWatch
 from reasoned_explorer.vehicles.airsim.pace import Pace, pace_of
 from reasoned_explorer.vehicles.airsim.rpc import Pending, RpcClient
+from reasoned_explorer.vehicles.airsim.senses import Senses
 from reasoned_explorer.vehicles.airsim.settings import DriverSettings
 from reasoned_explorer.vehicles.profile import VehicleProfile
+from reasoned_explorer.vehicles.safety.telemetry import Telemetry
 from reasoned_explorer.vehicles.vehicle import Vehicle
 
 #: Says what a simulator knows to be in a view that a camera really takes at a pose; for simulated captioners only.
@@ -82,7 +84,8 @@ class AirSimVehicle(Vehicle):
         #: Which way each camera looks from straight ahead, radians, and its field of view.
         self._cameras: dict[str, tuple[float, float]] = {}
         self._legs = self._looks = 0
-        self._is_up = False
+        self._is_up = self._is_linked = False
+        self._senses = Senses(self.api, self.settings, clock)
         #: The last leg; after a cancelled `go_to` the part of it that was travelled.
         self.last_leg: Leg | None = None
 
@@ -90,6 +93,27 @@ class AirSimVehicle(Vehicle):
     def pose(self) -> Pose:
         """Where the vehicle believed to be when it last moved or looked."""
         return self._moment.believed
+
+    def telemetry(self) -> Telemetry:
+        """Return what was told when the vehicle last moved, looked or was refreshed."""
+        return self._senses.telemetry(self._moment)
+
+    async def refresh(self) -> None:
+        """Ask where the vehicle is, and what it knows of itself."""
+        await self._catch_up()
+
+    async def halt(self) -> None:
+        """Hover, whatever it was doing."""
+        if self._is_up:
+            await self._pace.talk(self.api.hover)
+
+    async def connect(self) -> None:
+        """Find out where it is and which way the cameras look; take no control."""
+        await self._pace.talk(self.api.confirm)
+        self._is_linked = True
+        await self._pace.begin()
+        await self._catch_up()
+        await self._pace.talk(self._find_cameras)
 
     async def start(self) -> None:
         """Connect, take control, arm, take off and rise to where the cameras are to be.
@@ -117,6 +141,10 @@ class AirSimVehicle(Vehicle):
         Raises:
             PartError: If the vehicle may still be flying: the link is lost, or it does not land.
         """
+        if self._is_linked and not self._is_up:
+            self._is_linked = False
+            await self._pace.end()
+            await self._pace.talk(self._client.close)
         if not self._is_up:
             return
         self._is_up = False
@@ -142,6 +170,7 @@ class AirSimVehicle(Vehicle):
         await self._catch_up()
         wanted = {index: normalise_heading_rad(heading) for index, heading in enumerate(headings_rad)}
         seen: dict[int, tuple[str, _Seen]] = {}
+        turns = self._is_up and (not self.settings.aims or self.profile.turns_to_look)
         fitting = {index: name for index, heading in wanted.items() if (name := self._camera_towards(heading))}
         if fitting:
             shots = await self._pace.talk(lambda: self._shoot(tuple(fitting.values())))
@@ -149,7 +178,7 @@ class AirSimVehicle(Vehicle):
                 seen[index] = fitting[index], shot
         first = self.settings.cameras[0]
         for index in self._turning_order({k: v for k, v in wanted.items() if k not in fitting}):
-            if not self.settings.aims or self.profile.turns_to_look:
+            if turns:
                 await self._turn_to(wanted[index])
             seen[index] = first, await self._aimed(first, wanted[index])
         if self.profile.look_s > 0.0:
@@ -180,7 +209,9 @@ class AirSimVehicle(Vehicle):
         speed_mps = self.profile.speed_mps
         try:
             moving = await self._pace.talk(lambda: self.api.move_to(aim, speed_mps=speed_mps))
+            self._senses.hear(listening=True)
             outcome, detail = await self._follow(moving, watch)
+            self._senses.hear(listening=False)
             if outcome is LegOutcome.ARRIVED and self._settle_s > 0.0:
                 await self._pace.until(None, self._settle_s)
                 true = await self._see()
@@ -189,6 +220,11 @@ class AirSimVehicle(Vehicle):
             await asyncio.shield(self._pace.talk(self.api.hover))
             self.last_leg = watch.leg(LegOutcome.STOPPED, "cancelled")
             raise
+        except PartError as fault:
+            self.last_leg = watch.leg(LegOutcome.FAULT, str(fault))
+            raise
+        finally:
+            self._senses.hear(listening=False)
         self.last_leg = watch.leg(outcome, detail)
         return self.last_leg
 
@@ -228,6 +264,7 @@ class AirSimVehicle(Vehicle):
         """Have passed in the simulator what has passed on the mission's clock; return where the vehicle truly is."""
         await self._pace.catch_up()
         self._moment, true = await self._pace.talk(self._both)
+        self._senses.hear(listening=False)
         return true
 
     async def _see(self) -> Pose:
@@ -235,11 +272,13 @@ class AirSimVehicle(Vehicle):
         moment, true = await self._pace.talk(self._both)
         elapsed_s = moment.t_s - self._moment.t_s if self._moment.t_s > 0.0 else 0.0
         self._moment = moment
+        self._senses.hear(listening=self._senses.is_listening)
         if elapsed_s > 0.0:
             await self._pace.charge(elapsed_s)
         return true
 
     async def _both(self) -> tuple[Moment, Pose]:
+        await self._senses.read()
         return await self.api.moment(), await self.api.true_pose()
 
     async def _finish(self, pending: Pending, what: str) -> None:
