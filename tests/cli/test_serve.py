@@ -117,3 +117,54 @@ def test_without_a_start_it_stands_at_a_free_spot_near_the_middle() -> None:
     spot = free_spot(atlas, profile)
     check_start(atlas, profile, spot)
     assert abs(spot.x_m) + abs(spot.y_m) < 300.0
+
+
+def test_a_dry_run_looks_and_says_where_it_would_go() -> None:
+    with _serving(*WORLD, "--speed", "max") as (_, address):
+        code, shown = _rex("run", *MISSION, "--seed", "0", "--vehicle", address, "--dry-run", "--out", "dry")
+    assert code == 1, shown
+    assert "guard: would go" in shown
+    assert "0 m travelled" in shown
+    events = [event for step in _steps("dry") for event in step["interventions"]]  # type: ignore[attr-defined]
+    assert {event["cause"] for event in events} == {"dry run"}
+
+
+def test_a_fence_keeps_it_near_the_start() -> None:
+    with _serving(*WORLD, "--speed", "max") as (_, address):
+        code, shown = _rex("run", *MISSION, "--seed", "0", "--vehicle", address, "--fence", "6", "--out", "fenced")
+    assert code in {1, 3}, shown
+    steps = _steps("fenced")
+    header = json.loads((Path("fenced") / "record.jsonl").read_text().splitlines()[0])["header"]
+    x_m, y_m = header["start"][:2]
+    track = [point for step in steps for leg in step["legs"] for point in leg["track"]]  # type: ignore[attr-defined]
+    assert all((point["x_m"] - x_m) ** 2 + (point["y_m"] - y_m) ** 2 <= 36.0 for point in track)
+    assert "fence" in (Path("fenced") / "record.jsonl").read_text()
+
+
+def test_the_list_before_moving_tells_what_is_wrong() -> None:
+    with _serving(*WORLD, "--speed", "max") as (_, address):
+        code, shown = _rex("vehicle", "check", address, "--fence", "50")
+    assert code == 3, shown
+    assert re.search(r"ok +link", shown)
+    assert re.search(r"ok +camera +224 × 224 pixels", shown)
+    assert re.search(r"NO +stop switch", shown)  # no terminal: nobody can press a key
+    code, shown = _rex("vehicle", "check", "airsim://127.0.0.1:1")
+    assert code == 3, shown
+    assert re.search(r"NO +link", shown)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "what"),
+    [
+        (["vehicle", "check", "drone"], "is a profile"),
+        (["run", "Find me a bench", "--dry-run", "--fence", "9"], "--fence, --dry-run with 'drone'"),
+        (["run", "Find me a bench", "--vehicle", "airsim://x", "--fence", "1"], "a fence of 1.0"),
+        (["run", "Find me a bench", "--vehicle", "airsim://x", "--max-speed", "-1"], "speed_mps = -1.0"),
+        (["run", "Find me a bench", "--vehicle", "airsim://x", "--confirm"], "nobody can be asked"),
+    ],
+)
+def test_what_cannot_be_asked_of_a_vehicle_is_told(arguments: list[str], what: str) -> None:
+    code, shown = _rex(*arguments)
+    assert code == 2, shown
+    assert what in shown
+    assert not list(Path().iterdir())

@@ -1,6 +1,6 @@
 """What every call of a mind cost: seconds, tokens and money."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from reasoned_explorer.calls.chat import is_model_name
@@ -45,14 +45,20 @@ class Ledger:
     """All calls of one mission, in the order in which they were written down.
 
     Modelled calls are written down when they are asked, real ones when they end, by the mission's clock.
+
+    Attributes:
+        on_call: Told each call that is written down by itself, as real ones are; None for nobody.
     """
 
     def __init__(self) -> None:
         self._calls: list[CallRecord] = []
+        self.on_call: Callable[[CallRecord], None] | None = None
 
     def add(self, call: CallRecord) -> None:
         """Write a call down."""
         self._calls.append(call)
+        if self.on_call is not None:
+            self.on_call(call)
 
     def add_all(self, calls: Iterable[CallRecord]) -> None:
         """Write several calls down, in order."""

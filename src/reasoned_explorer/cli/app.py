@@ -12,6 +12,7 @@ from reasoned_explorer.cli.look_app import add_look
 from reasoned_explorer.cli.minds_app import minds_app
 from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices, SampleAnew, Yes
 from reasoned_explorer.cli.serve_app import add_serve
+from reasoned_explorer.cli.vehicles_app import Fence, MaxSpeed, vehicles_app
 from reasoned_explorer.cli.worlds_app import worlds_app
 
 app = typer.Typer(
@@ -23,6 +24,7 @@ app = typer.Typer(
 )
 app.add_typer(worlds_app, name="worlds")
 app.add_typer(minds_app, name="minds")
+app.add_typer(vehicles_app, name="vehicle")
 add_commands(app)
 add_look(app)
 add_serve(app)
@@ -77,6 +79,15 @@ def run(
     vehicle: Annotated[
         str, typer.Option(help="A vehicle profile (see rex names), or where a vehicle is reached: airsim://HOST:41451.")
     ] = "drone",
+    fence: Fence = None,
+    max_speed: MaxSpeed = None,
+    dry_run: Annotated[
+        bool,
+        typer.Option("--dry-run", help="A vehicle at an address looks, and it says where it would go; it stands."),
+    ] = False,
+    confirm: Annotated[
+        bool, typer.Option("--confirm", help="Ask at the terminal before each leg of a vehicle at an address.")
+    ] = False,
     latency: Annotated[
         str, typer.Option(help="How long modelled calls take: gpt-2023, gpt-fast, instant, or seconds: 0.8s.")
     ] = "gpt-2023",
@@ -123,6 +134,7 @@ def run(
     """
     from reasoned_explorer.cli.models import ModelOptions
     from reasoned_explorer.cli.run import RunOptions, run_from_options
+    from reasoned_explorer.cli.vehicles import VehicleOptions
 
     run_from_options(
         RunOptions(
@@ -138,7 +150,7 @@ def run(
             evaluator=evaluator,
             checker=checker,
             captioner=captioner,
-            vehicle=vehicle,
+            vehicle=VehicleOptions(vehicle, fence_m=fence, max_speed_mps=max_speed, dry_run=dry_run, confirm=confirm),
             latency=latency,
             clock=clock,
             views=views,

@@ -76,6 +76,8 @@ def step_lines(step: StepRecord, *, path_m: float | None = None) -> Iterator[str
     for view in step.views:
         if view.found:
             yield f"          ! goal seen ({view.confidence:.2f}): {_clipped(view.evidence)}"
+    for event in step.interventions:
+        yield f"          # guard: {_clipped(event.detail)} ({event.cause}); {event.done}"
     for note in step.notes:
         yield f"          · {_clipped(note)}"
 

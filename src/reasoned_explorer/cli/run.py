@@ -15,11 +15,13 @@ from reasoned_explorer.cli.console import Output
 from reasoned_explorer.cli.models import ModelOptions
 from reasoned_explorer.cli.parsing import BoxDeg, check_start_form, parse_bbox, parse_start
 from reasoned_explorer.cli.progress import Progress, header_lines, summary_lines
+from reasoned_explorer.cli.vehicles import VehicleOptions
 from reasoned_explorer.evaluation.methods import BOUND_METHODS
 from reasoned_explorer.evaluation.mission import Mission, MissionResult
 from reasoned_explorer.evaluation.mission_settings import MissionSettings, errors_of, models_of
+from reasoned_explorer.evaluation.model_desk import ModelDesk
 from reasoned_explorer.evaluation.picture_folder import PICTURES_NAME
-from reasoned_explorer.evaluation.vehicle_address import VehicleAddress, start_at, vehicle_address
+from reasoned_explorer.evaluation.vehicle_address import VehicleAddress, start_at
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Fault, Gathering, InputError, RecordError, SettingsError
@@ -52,7 +54,7 @@ class RunOptions:
     evaluator: str | None
     checker: str | None
     captioner: str
-    vehicle: str
+    vehicle: VehicleOptions
     latency: str
     clock: str | None
     views: int
@@ -74,8 +76,8 @@ class RunOptions:
     def profile(self) -> str:
         """Name of the vehicle's profile, also where the vehicle is named by its address."""
         with suppress(InputError):
-            address = vehicle_address(self.vehicle)
-            return self.vehicle if address is None else address.profile
+            address = self.vehicle.address
+            return self.vehicle.vehicle if address is None else address.profile
         return MissionSettings().vehicle  # what is wrong with the address is told by itself
 
     def settings(self, found: Gathering) -> MissionSettings:
@@ -136,7 +138,7 @@ class RunOptions:
         found.check(lambda: check_world_name(self.world, seed=seed, bbox=bbox))
         found.check(lambda: check_start_form(self.start))
         settings = self.settings(found)
-        found.check(lambda: vehicle_address(self.vehicle))
+        self.vehicle.check(found)
         folder = found.take(lambda: _folder(self), Path())
         found.finish("mission")
         return settings, bbox, folder
@@ -155,16 +157,28 @@ def run_from_options(options: RunOptions) -> None:
     stop_if_asked()
     desk = options.models.desk()
     options.models.agree(desk, settings.captioner, [world.name] if world.origin is not None else [])
-    atlas, address = Atlas(world), vehicle_address(options.vehicle)
-    mission = Mission(
-        options.goal,
-        atlas,
-        settings,
-        start=_start(options, atlas, address),
-        desk=desk,
-        pictures=folder / PICTURES_NAME if options.images else None,
-        address=address,
-    )
+    atlas = Atlas(world)
+    start = _start(options, atlas, options.vehicle.address)
+    with options.vehicle.guarding(is_real=settings.clock == "real") as guarding:
+        mission = Mission(
+            options.goal,
+            atlas,
+            settings,
+            start=start,
+            desk=desk,
+            pictures=folder / PICTURES_NAME if options.images else None,
+            guarding=guarding,
+        )
+        result = _run(options, mission, folder, desk, console)
+    for line in summary_lines(result.record):
+        console.print(line, markup=False, soft_wrap=True)
+    _keep(result, folder, draw=options.draw)
+    console.print(f"kept in {folder}", markup=False, soft_wrap=True)
+    options.models.say_how_to_go_on(desk, folder)
+    raise typer.Exit(_exit_code(result))
+
+
+def _run(options: RunOptions, mission: Mission, folder: Path, desk: ModelDesk, console: Output) -> MissionResult:
     stop_if_asked()
     if not options.quiet:
         for line in header_lines(mission.header):
@@ -181,13 +195,7 @@ def run_from_options(options: RunOptions) -> None:
                 console.print(line, markup=False, soft_wrap=True)
 
     with options.models.taping(desk, mission, folder):
-        result = mission.run(folder=folder, on_step=on_step)
-    for line in summary_lines(result.record):
-        console.print(line, markup=False, soft_wrap=True)
-    _keep(result, folder, draw=options.draw)
-    console.print(f"kept in {folder}", markup=False, soft_wrap=True)
-    options.models.say_how_to_go_on(desk, folder)
-    raise typer.Exit(_exit_code(result))
+        return mission.run(folder=folder, on_step=on_step)
 
 
 def _start(options: RunOptions, atlas: Atlas, address: VehicleAddress | None) -> Pose | None:

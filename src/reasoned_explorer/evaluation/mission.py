@@ -13,6 +13,7 @@ import numpy as np
 from reasoned_explorer.calls.caller import Caller, end_of
 from reasoned_explorer.calls.chat import is_model_name
 from reasoned_explorer.calls.ledger import CallRecord, Ledger
+from reasoned_explorer.evaluation.guarding import Guarding, listen_for_lost_calls
 from reasoned_explorer.evaluation.guide import GUIDE_LABEL, Guide
 from reasoned_explorer.evaluation.mission_settings import CLOCKS, THROUGH_PIXELS, errors_of, with_overrides
 from reasoned_explorer.evaluation.mission_settings import MissionSettings as MissionSettings  # noqa: PLC0414 - is had from here, too
@@ -22,7 +23,6 @@ from reasoned_explorer.evaluation.record_file import RecordWriter
 from reasoned_explorer.evaluation.scoring import MissionScore, outcome_of, score
 from reasoned_explorer.evaluation.track import looks_of, track_of
 from reasoned_explorer.evaluation.truth import OracleTruth
-from reasoned_explorer.evaluation.vehicle_address import VehicleAddress
 from reasoned_explorer.exploration.explorer import Exploration, Explorer, Parts
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.minds.context import MindContext, Minds
@@ -58,6 +58,7 @@ from reasoned_explorer.task.reading import read_goal
 from reasoned_explorer.task.sampling import OutOfRangeError, SamplingSettings, sample_start, settle_for_a_start
 from reasoned_explorer.vehicles import VehicleProfile
 from reasoned_explorer.vehicles.registry import vehicle_profile
+from reasoned_explorer.vehicles.safety.guard import GuardedVehicle
 from reasoned_explorer.vehicles.vehicle import Vehicle
 from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.geodesic import Traveller
@@ -109,7 +110,7 @@ class Mission:
         judge: A judge of this goal, world, vehicle and success radius from an earlier mission, to share its work with.
         desk: Makes the callers of models; None where the settings name none, or for one without cache, tape and budget.
         pictures: Folder in which the pictures of all views are kept; None keeps none.
-        address: Of a vehicle outside of this process that stands at the start; None for the embedded simulator's.
+        guarding: Which vehicle outside of this process stands at the start; None for the embedded simulator's.
 
     Raises:
         GoalError: If the goal cannot be understood.
@@ -132,7 +133,7 @@ class Mission:
         judge: Judge | None = None,
         desk: ModelDesk | None = None,
         pictures: Path | None = None,
-        address: VehicleAddress | None = None,
+        guarding: Guarding | None = None,
     ) -> None:
         _check_arguments(world, settings, start)
         self.settings = settings if settings is not None else MissionSettings()
@@ -148,7 +149,7 @@ class Mission:
         self.start = self._start(start, self.judge.traveller)
         stop_if_asked()
         self.clock = CLOCKS[self.settings.clock]()
-        self._desk, self._pictures, self._address = desk, pictures, address
+        self._desk, self._pictures, self._guarding = desk, pictures, guarding
         # Privileged minds and the guide alone may read the truth; they are the only ones that ask for it.
         truth = OracleTruth(self.atlas, self.judge, self.profile, self.settings.explorer)
         self.explorer: Explorer | Guide
@@ -294,8 +295,16 @@ class Mission:
         self._labels = (planner.label, minds.label, captioner.label + through)
         explorer = with_overrides(settings.explorer, planner)
         self.settings = replace(settings, explorer=explorer)
-        vehicle, must_end = self._vehicle(), end_of(callers)
-        parts = Parts(vehicle, captioner, planner, minds.checker, self.clock, ledger, must_end)
+        vehicle, models_end = self._vehicle(), end_of(callers)
+        parts = Parts(vehicle, captioner, planner, minds.checker, self.clock, ledger, models_end)
+        if isinstance(vehicle, GuardedVehicle):
+            guard = vehicle
+            listen_for_lost_calls(guard, ledger)
+            parts = replace(
+                parts,
+                must_end=lambda: models_end() or guard.must_end(),
+                take_interventions=guard.take_interventions,
+            )
         return Explorer(parts, explorer)
 
     @property
@@ -304,8 +313,8 @@ class Mission:
         return self._pictures is not None
 
     def _vehicle(self) -> Vehicle:
-        if self._address is not None:
-            return self._address.vehicle(self)
+        if self._guarding is not None:
+            return self._guarding.vehicle(self)
         settings, painter = self.settings, None
         if self._pictures is not None or is_model_name(settings.captioner):
             painter = Painter(self.atlas, side_px=settings.picture_px, conditions=settings.conditions)
@@ -347,7 +356,7 @@ class Mission:
             reference_way=tuple((round(float(x), 2), round(float(y), 2)) for x, y in way) if way is not None else (),
             success_radius_m=self.settings.success_radius_m,
             understood=tuple(self.spec.describe()),
-            notes=self._notes if self._address is None else (*self._notes, f"vehicle at {self._address}"),
+            notes=self._notes if self._guarding is None else (*self._notes, f"vehicle at {self._guarding.address}"),
             origin_deg=None if world.origin is None else (world.origin.lat_deg, world.origin.lon_deg),
         )
 

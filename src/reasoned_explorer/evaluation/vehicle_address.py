@@ -5,15 +5,16 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
-from reasoned_explorer.calls.chat import is_model_name
+from reasoned_explorer.clock import Clock
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Fault, SettingsError
+from reasoned_explorer.vehicles.profile import VehicleProfile
 from reasoned_explorer.vehicles.registry import vehicle_profile
 from reasoned_explorer.vehicles.vehicle import Vehicle
 
 if TYPE_CHECKING:
-    from reasoned_explorer.evaluation.mission import Mission
     from reasoned_explorer.vehicles.airsim.place import ServedPlace
+    from reasoned_explorer.vehicles.airsim.vehicle import Content
 
 _FORM = "airsim://HOST:PORT, or PROFILE@airsim://HOST:PORT"
 _DEFAULT_PORTS = {"airsim": 41451}
@@ -41,33 +42,37 @@ class VehicleAddress:
         host = f"[{self.host}]" if ":" in self.host else self.host
         return f"{self.scheme}://{host}:{self.port}"
 
-    def vehicle(self, mission: "Mission") -> Vehicle:
+    def vehicle(
+        self,
+        profile: VehicleProfile,
+        *,
+        clock: Clock,
+        start: Pose,
+        pictures: bool = True,
+        content: "Content | None" = None,
+    ) -> Vehicle:
         """Return the driver of the vehicle, which connects when it is started.
 
-        Simulated captioners are told what its cameras show, which supposes that it is in the mission's world.
-
         Args:
-            mission: Whose start is where the vehicle stands.
+            profile: How fast and how high it is told to move.
+            clock: The mission's.
+            start: Where it stands, in the world's frame.
+            pictures: Whether pictures are taken.
+            content: Says what its cameras show, for simulated captioners of a world that both ends know.
 
         Raises:
             MissingDependencyError: If the library of its wire is not installed.
         """
-        from reasoned_explorer.simulation.eyes import Eyes
-        from reasoned_explorer.simulation.pixel_eyes import PixelEyes
         from reasoned_explorer.vehicles.airsim.settings import DriverSettings
         from reasoned_explorer.vehicles.airsim.vehicle import AirSimVehicle
 
-        settings = mission.settings
-        shows = is_model_name(settings.captioner) or mission.keeps_pictures
-        knows = not is_model_name(settings.captioner)
-        content = (PixelEyes if settings.eyes == "pixels" else Eyes)(mission.atlas).look if knows else None
         return AirSimVehicle(
-            mission.profile,
-            clock=mission.clock,
+            profile,
+            clock=clock,
             host=self.host,
             port=self.port,
-            home=replace(mission.start, z_m=0.0),
-            settings=DriverSettings(aims=True, pictures=shows, settle_s=0.0),
+            home=replace(start, z_m=0.0),
+            settings=DriverSettings(aims=True, pictures=pictures, settle_s=0.0),
             content=content,
         )
 

@@ -93,9 +93,7 @@ def airsim(atlas: Atlas, profile: str, mishaps: Sequence[Mishap]) -> Iterator[Re
 
         def make(limited: VehicleProfile) -> Vehicle:
             content = NoEyes().look
-            return AirSimVehicle(
-                limited, clock=clock, port=served.port, home=START, settings=settings, content=content
-            )
+            return AirSimVehicle(limited, clock=clock, port=served.port, home=START, settings=settings, content=content)
 
         def true_pose() -> Pose:
             sim = served.server.simulator

@@ -1,0 +1,165 @@
+"""What a person says about a vehicle that is somewhere else, and ``rex vehicle check``."""
+
+import asyncio
+import math
+import queue
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+
+import typer
+
+from reasoned_explorer.cli.answers import ExitCode
+from reasoned_explorer.cli.console import Output
+from reasoned_explorer.clock import RealClock
+from reasoned_explorer.evaluation.guarding import Guarding
+from reasoned_explorer.evaluation.vehicle_address import VehicleAddress, vehicle_address
+from reasoned_explorer.geometry import Pose
+from reasoned_explorer.model import Fault, Gathering, PartError, SettingsError
+from reasoned_explorer.vehicles.registry import vehicle_profile
+from reasoned_explorer.vehicles.safety.limits import SafetyLimits, limited_profile
+from reasoned_explorer.vehicles.safety.operator_stop import STOP_KEYS, KeyboardListener, OperatorStop
+from reasoned_explorer.vehicles.safety.preflight import CheckItem, CheckVerdict, preflight
+
+_MARKS = {CheckVerdict.OK: "ok", CheckVerdict.UNKNOWN: "??", CheckVerdict.FAULT: "NO"}
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleOptions:
+    """What a person typed; see ``rex run --help``."""
+
+    vehicle: str
+    fence_m: float | None = None
+    max_speed_mps: float | None = None
+    dry_run: bool = False
+    confirm: bool = False
+
+    @property
+    def address(self) -> VehicleAddress | None:
+        """Where the vehicle is; None for the embedded simulator's.
+
+        Raises:
+            InputError: If it is neither an address nor the name of a profile.
+        """
+        return vehicle_address(self.vehicle)
+
+    def check(self, found: Gathering) -> None:
+        """Keep what is wrong with it."""
+        address = found.take(lambda: self.address, None)
+        given = {
+            "--fence": self.fence_m is not None,
+            "--max-speed": self.max_speed_mps is not None,
+            "--dry-run": self.dry_run,
+            "--confirm": self.confirm,
+        }
+        if address is not None:
+            found.check(lambda: Guarding(address, self._limits(), fence_m=self.fence_m))
+            if self.confirm and not _is_terminal():
+                found.add(SettingsError("--confirm", [Fault("nobody can be asked", "a terminal", "or leave it out")]))
+        elif "://" not in self.vehicle and any(given.values()):
+            named = ", ".join(name for name, is_given in given.items() if is_given)
+            fault = Fault(f"{named} with {self.vehicle!r:.60}", "a vehicle at an address, such as airsim://HOST:41451")
+            found.add(SettingsError("--vehicle", [fault]))
+
+    @contextmanager
+    def guarding(self, *, is_real: bool) -> Iterator[Guarding | None]:
+        """Have the keyboard listened to within a ``with`` block; gives the guard's orders, None where there is none.
+
+        Args:
+            is_real: Whether the mission's time is real time, which goes on while a person thinks.
+        """
+        address = self.address
+        if address is None:
+            yield None
+            return
+        stop, keys = OperatorStop(), queue.SimpleQueue[str]()
+
+        def ask(here: Pose, aim: Pose) -> bool:
+            way = f"{here.distance_to_m(aim.x_m, aim.y_m):.1f} m to ({aim.x_m:.1f}, {aim.y_m:.1f})"
+            typer.echo(f"go {way}, then face {math.degrees(aim.heading_rad):.0f}°? y or n: ", nl=False, err=True)
+            while True:
+                try:
+                    key = keys.get(timeout=0.1).lower()
+                except queue.Empty:
+                    if stop.pressed:
+                        return False
+                    continue
+                if key in "yn":
+                    typer.echo(key, err=True)
+                    return key == "y"
+
+        async def confirm(here: Pose, aim: Pose) -> bool:
+            return await asyncio.to_thread(ask, here, aim) if is_real else ask(here, aim)
+
+        orders = Guarding(
+            address,
+            self._limits(),
+            fence_m=self.fence_m,
+            dry_run=self.dry_run,
+            confirm=confirm if self.confirm else None,
+            stop=stop,
+        )
+        if not _is_terminal():
+            yield orders
+            return
+        with KeyboardListener(stop, on_key=keys.put):
+            named = {" ": "space", "\x1b": "Esc"}
+            typer.echo(f"{', '.join(named.get(key, key) for key in STOP_KEYS)}: stop the vehicle", err=True)
+            yield orders
+
+    def _limits(self) -> SafetyLimits:
+        return SafetyLimits(speed_mps=self.max_speed_mps)
+
+
+def check_vehicle(options: VehicleOptions) -> None:
+    """Go through the list that comes before moving, print it, and exit with 3 where anything on it is wrong.
+
+    Raises:
+        InputError: If an option is wrong.
+        typer.Exit: If an item is not as it should be.
+    """
+    found = Gathering()
+    options.check(found)
+    found.finish("vehicle")
+    address = options.address
+    if address is None:
+        fault = Fault(f"{options.vehicle!r:.60} is a profile", "where a vehicle is, such as airsim://HOST:41451")
+        raise SettingsError("vehicle", [fault])
+    console = Output()
+    items = asyncio.run(_items(options, address))
+    for item in items:
+        then = f": {item.remedy}" if item.remedy else ""
+        console.print(f"{_MARKS[item.verdict]}  {item.name:12s} {item.seen}{then}", markup=False, soft_wrap=True)
+    if any(item.verdict is CheckVerdict.FAULT for item in items):
+        raise typer.Exit(ExitCode.PART_FAILED)
+
+
+async def _items(options: VehicleOptions, address: VehicleAddress) -> tuple[CheckItem, ...]:
+    stop, start = OperatorStop(), Pose(0.0, 0.0)
+    stop.is_reachable = _is_terminal()
+    place = None
+    with suppress(PartError):
+        place = await address.place()
+    if place is not None:
+        start = place.start
+    with options.guarding(is_real=True) as orders:
+        if orders is None:
+            raise AssertionError
+        limits = orders.limits_at(start)
+        profile = limited_profile(vehicle_profile(address.profile), limits)
+        vehicle = address.vehicle(profile, clock=RealClock(), start=start)
+        try:
+            with suppress(PartError):  # the list says what is wrong
+                await vehicle.connect()
+            return await preflight(vehicle, limits, stop=orders.stop or stop)
+        finally:
+            with suppress(PartError):  # the list says what is wrong
+                await vehicle.close()
+
+
+def _is_terminal() -> bool:
+    try:
+        return sys.stdin is not None and sys.stdin.isatty()
+    except ValueError:
+        return False

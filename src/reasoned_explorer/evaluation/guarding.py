@@ -1,0 +1,98 @@
+"""A mission's vehicle that is somewhere else, with a guard in front of it."""
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from reasoned_explorer.calls.chat import is_model_name
+from reasoned_explorer.calls.ledger import Ledger
+from reasoned_explorer.evaluation.vehicle_address import VehicleAddress
+from reasoned_explorer.geometry import Pose
+from reasoned_explorer.model import Fault, SettingsError
+from reasoned_explorer.model.checks import is_within
+from reasoned_explorer.model.record import CallRecord
+from reasoned_explorer.simulation.eyes import Eyes
+from reasoned_explorer.simulation.pixel_eyes import PixelEyes
+from reasoned_explorer.vehicles.profile import VehicleProfile
+from reasoned_explorer.vehicles.safety.area import Circle
+from reasoned_explorer.vehicles.safety.building import guarded
+from reasoned_explorer.vehicles.safety.guard import Confirm, GuardedVehicle
+from reasoned_explorer.vehicles.safety.limits import SafetyLimits
+from reasoned_explorer.vehicles.safety.operator_stop import OperatorStop
+from reasoned_explorer.vehicles.vehicle import Vehicle
+
+if TYPE_CHECKING:
+    from reasoned_explorer.evaluation.mission import Mission
+
+
+@dataclass(frozen=True, slots=True)
+class Guarding:
+    """Which vehicle, and what it may do.
+
+    Attributes:
+        address: Where the vehicle is.
+        limits: What it may do.
+        fence_m: It stays within so far of where the mission begins, metres; None for what the limits say.
+        dry_run: Look, plan and report, but never move.
+        confirm: Asks a person before each leg.
+        stop: The operator's.
+
+    Raises:
+        SettingsError: If the fence is out of range.
+    """
+
+    address: VehicleAddress
+    limits: SafetyLimits = field(default_factory=SafetyLimits)
+    fence_m: float | None = None
+    dry_run: bool = False
+    confirm: Confirm | None = None
+    stop: OperatorStop | None = None
+
+    def __post_init__(self) -> None:
+        if self.fence_m is not None and not is_within(self.fence_m, 2.0, 1e5):
+            raise SettingsError("guard", [Fault(f"a fence of {self.fence_m!r:.40}", "metres in [2, 100000]")])
+
+    def vehicle(self, mission: "Mission") -> GuardedVehicle:
+        """Return the vehicle of a mission, which connects when it is started.
+
+        Raises:
+            SettingsError: If the vehicle cannot keep to the limits.
+            MissingDependencyError: If the library of its wire is not installed.
+        """
+        settings, start = mission.settings, mission.start
+        is_called = is_model_name(settings.captioner)
+        eyes = PixelEyes(mission.atlas) if settings.eyes == "pixels" else Eyes(mission.atlas)
+
+        def make(profile: VehicleProfile) -> Vehicle:
+            return self.address.vehicle(
+                profile,
+                clock=mission.clock,
+                start=start,
+                pictures=is_called or mission.keeps_pictures,
+                content=None if is_called else eyes.look,
+            )
+
+        return guarded(
+            make,
+            mission.profile,
+            self.limits_at(start),
+            clock=mission.clock,
+            stop=self.stop,
+            confirm=self.confirm,
+            dry_run=self.dry_run,
+        )
+
+    def limits_at(self, start: Pose) -> SafetyLimits:
+        """Return the limits of a vehicle that begins somewhere."""
+        if self.fence_m is None:
+            return self.limits
+        return replace(self.limits, fence=Circle(start.x_m, start.y_m, self.fence_m))
+
+
+def listen_for_lost_calls(guard: GuardedVehicle, ledger: Ledger) -> None:
+    """Have a guard told what comes of each call of a model."""
+
+    def hear(call: CallRecord) -> None:
+        if is_model_name(call.model):
+            guard.note_model_call(answered=call.fault is None, why=call.fault or "")
+
+    ledger.on_call = hear
