@@ -1,0 +1,72 @@
+"""A served Go1 for the tests, and a script that is run with a driver of it."""
+
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from reasoned_explorer.clock import Clock, VirtualClock
+from reasoned_explorer.geometry import Pose
+from reasoned_explorer.serving.airsim.background import BackgroundServer
+from reasoned_explorer.serving.go1.gnss import GnssServer
+from reasoned_explorer.serving.go1.server import Go1Server
+from reasoned_explorer.serving.go1.walker import Walker
+from reasoned_explorer.vehicles import PROFILES
+from reasoned_explorer.vehicles.positioning import Receiver, parse_source
+from reasoned_explorer.vehicles.unitree import LinkSettings
+from reasoned_explorer.vehicles.unitree.vehicle import Go1Vehicle
+from reasoned_explorer.world.atlas import Atlas
+
+HOME = Pose(50.0, 50.0)
+GO1 = PROFILES["go1"]
+
+
+def served(
+    atlas: Atlas,
+    *,
+    lockstep: bool = True,
+    dialect: str = "",
+    noise: str = "none",
+    seed: int = 0,
+    start: Pose = HOME,
+    **more: Any,
+) -> BackgroundServer[Go1Server]:
+    """Return a server that runs while a `with` block does; with a receiver where a dialect is named."""
+
+    def make() -> Go1Server:
+        walker = Walker(atlas, GO1, start, noise=noise, seed=seed)
+        gnss = GnssServer(walker.noise, dialect=dialect) if dialect else None
+        return Go1Server(walker, gnss=gnss, lockstep=lockstep, **more)
+
+    return BackgroundServer(make)
+
+
+def receiver(server: BackgroundServer[Go1Server], clock: Clock) -> Receiver:
+    """Return the receiver that is served beside the robot, as a person would name it."""
+    gnss = server.server.gnss
+    assert gnss is not None
+    port = server.server.gnss_port
+    text = f"gpsd://127.0.0.1:{port}" if gnss.dialect == "gpsd" else f"serial:socket://127.0.0.1:{port}"
+    return Receiver(parse_source(text), origin=gnss.origin, now_s=clock.now_s)
+
+
+def walked(
+    server: BackgroundServer[Go1Server],
+    script: Callable[[Go1Vehicle], Awaitable[Any]],
+    *,
+    clock: Clock | None = None,
+    home: Pose = HOME,
+    by_receiver: bool = False,
+    **more: Any,
+) -> Any:
+    """Run a script with a driver of the served robot, from its start to its close."""
+    clock = clock or VirtualClock()
+
+    async def run() -> Any:
+        positions = receiver(server, clock) if by_receiver else None
+        link = LinkSettings(local_port=0)
+        vehicle = Go1Vehicle(
+            GO1, clock=clock, host="127.0.0.1", port=server.port, home=home, link=link, positions=positions, **more
+        )
+        async with vehicle:
+            return await script(vehicle)
+
+    return clock.run(run())
