@@ -24,18 +24,40 @@ _RECEIVER_AGAIN_S = 1.0
 #: How long a fix that a stepped robot says was sent may be on its way, real seconds.
 _FIX_DEADLINE_S = 10.0
 
+#: Told to walk at least so fast, and having done so, a robot whose legs make less than this share of it for so long is
+#: held up.
+_HELD_MPS, _HELD_SHARE, _HELD_S = 0.1, 0.25, 0.35
+_GOING_SHARE = 0.5
+#: It then steps back a hand's breadth, over ground that it has just walked, so that it is free to turn.
+_BACK = Velocity(-0.2)
+_BACK_S = 0.6
+
 Ended = tuple[LegOutcome, str]
 
 
 @dataclass(slots=True)
 class _Way:
-    """A leg or turn that is being walked."""
+    """A leg or turn that is being walked.
+
+    Attributes:
+        began_s: When it began, on the robot's time.
+        limit_s: How long it may take.
+        log: Of a leg; None of a turn.
+        outcome: How it ended, where it has; the robot then still has to come to rest.
+        rested: For how many moments it has stood since.
+        is_going: Whether its legs have made the speed that is asked for.
+        held_s: For how long they have not since.
+        back_s: For how long it still steps back.
+    """
 
     began_s: float
     limit_s: float
     log: LegLog | None
     outcome: Ended | None = None
     rested: int = 0
+    is_going: bool = False
+    held_s: float = 0.0
+    back_s: float = 0.0
 
 
 class Tracker:
@@ -186,8 +208,12 @@ class Tracker:
                     if way.rested >= _REST_MOMENTS:
                         self._way = None
                         return way.outcome
-                    way.rested += 1
-                    await self._moment(None)
+                    if way.back_s > 0.0:
+                        way.back_s -= self.robot.period_s
+                        await self._moment(_BACK)
+                    else:
+                        way.rested += 1
+                        await self._moment(None)
                 self._note(way)
         except PartError as error:
             self._way = None
@@ -223,6 +249,18 @@ class Tracker:
             way.outcome = LegOutcome.STUCK, "not there in three times the time that it should take"
         if way.outcome is None:
             await self._moment(_velocity(command))
+            self._feel(way, command.forward_mps)
+
+    def _feel(self, way: _Way, told_mps: float) -> None:
+        """Find out from its legs whether something holds it up."""
+        if self.reading is None or told_mps < _HELD_MPS:
+            way.is_going, way.held_s = False, 0.0
+            return
+        share = self.reading.forward_mps / told_mps
+        way.is_going |= share >= _GOING_SHARE
+        way.held_s = way.held_s + self.robot.period_s if way.is_going and share < _HELD_SHARE else 0.0
+        if way.held_s >= _HELD_S:
+            way.outcome, way.back_s = (LegOutcome.COLLISION, "something held it up"), _BACK_S
 
     def _note(self, way: _Way) -> None:
         if way.log is not None:
