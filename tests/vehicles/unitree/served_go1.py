@@ -1,11 +1,10 @@
 """A served Go1 for the tests, and a script that is run with a driver of it."""
 
 from collections.abc import Awaitable, Callable
-from typing import Any
+from typing import Any, Self
 
-from reasoned_explorer.clock import Clock, VirtualClock
+from reasoned_explorer.clock import Clock, VirtualClock, run_live
 from reasoned_explorer.geometry import Pose
-from reasoned_explorer.serving.airsim.background import BackgroundServer
 from reasoned_explorer.serving.go1.gnss import GnssServer
 from reasoned_explorer.serving.go1.server import Go1Server
 from reasoned_explorer.serving.go1.walker import Walker
@@ -17,6 +16,26 @@ from reasoned_explorer.world.atlas import Atlas
 
 HOME = Pose(50.0, 50.0)
 GO1 = PROFILES["go1"]
+#: A busy machine is no lost link: the tests on real time are patient.
+LOST_S = 1.5
+
+
+class Served:
+    """A server that runs while a `with` block does, in the driver's own event loop."""
+
+    def __init__(self, server: Go1Server) -> None:
+        self.server, self.port = server, 0
+
+    def __enter__(self) -> Self:
+        self.port = run_live(self.server.start)
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        run_live(self.server.close)
+
+    @property
+    def walker(self) -> Walker:
+        return self.server.walker
 
 
 def served(
@@ -28,18 +47,14 @@ def served(
     seed: int = 0,
     start: Pose = HOME,
     **more: Any,
-) -> BackgroundServer[Go1Server]:
-    """Return a server that runs while a `with` block does; with a receiver where a dialect is named."""
-
-    def make() -> Go1Server:
-        walker = Walker(atlas, GO1, start, noise=noise, seed=seed)
-        gnss = GnssServer(walker.noise, dialect=dialect) if dialect else None
-        return Go1Server(walker, gnss=gnss, lockstep=lockstep, **more)
-
-    return BackgroundServer(make)
+) -> Served:
+    """Return a served robot; with a receiver where a dialect is named."""
+    walker = Walker(atlas, GO1, start, noise=noise, seed=seed)
+    gnss = GnssServer(walker.noise, dialect=dialect) if dialect else None
+    return Served(Go1Server(walker, gnss=gnss, lockstep=lockstep, **more))
 
 
-def receiver(server: BackgroundServer[Go1Server], clock: Clock) -> Receiver:
+def receiver(server: Served, clock: Clock) -> Receiver:
     """Return the receiver that is served beside the robot, as a person would name it."""
     gnss = server.server.gnss
     assert gnss is not None
@@ -49,7 +64,7 @@ def receiver(server: BackgroundServer[Go1Server], clock: Clock) -> Receiver:
 
 
 def walked(
-    server: BackgroundServer[Go1Server],
+    server: Served,
     script: Callable[[Go1Vehicle], Awaitable[Any]],
     *,
     clock: Clock | None = None,
@@ -62,7 +77,7 @@ def walked(
 
     async def run() -> Any:
         positions = receiver(server, clock) if by_receiver else None
-        link = LinkSettings(local_port=0)
+        link = LinkSettings(local_port=0, command_lifetime_s=LOST_S, lost_after_s=LOST_S)
         vehicle = Go1Vehicle(
             GO1, clock=clock, host="127.0.0.1", port=server.port, home=home, link=link, positions=positions, **more
         )

@@ -8,6 +8,7 @@ from reasoned_explorer.serving.go1.gnss import GnssServer
 from reasoned_explorer.serving.go1.walker import Walker, numbered
 from reasoned_explorer.simulation.motion import TICK_S
 from reasoned_explorer.vehicles.unitree.codec import PacketError, decode_command, encode_state
+from reasoned_explorer.vehicles.unitree.lockstep import MOST_MOMENTS
 from reasoned_explorer.vehicles.unitree.messages import HighCommand
 
 #: A robot that was busy for longer makes up for no more than this, seconds.
@@ -19,8 +20,8 @@ class Go1Server(asyncio.DatagramProtocol):
 
     On real time it walks as long as commands to walk go on coming, and stands where none came for `silence_s`. States
     go to whoever sent the last command. In lockstep its time goes on by one tick for each new number that a command
-    bears in ``reserve``, and the state that answers it bears the number, too, and in ``serial_number`` how many fixes
-    the receiver has sent.
+    bears in ``reserve`` (by as many as it says in ``band_width``, where that is more); the state that answers it bears
+    the number, too, and in ``serial_number`` how many fixes the receiver has sent.
 
     Args:
         walker: The robot.
@@ -105,7 +106,8 @@ class Go1Server(asyncio.DatagramProtocol):
         if command.reserve != self._number or not self._answer:
             self._number = command.reserve
             self.walker.obey(command)
-            self._tick()
+            for _ in range(min(max(1, command.band_width), MOST_MOMENTS)):
+                self._tick()
             fixes = 0 if self.gnss is None else self.gnss.sent
             self._answer = encode_state(numbered(self.walker.state(), self._number, fixes))
         self._send(self._answer)

@@ -1,8 +1,8 @@
 """A Go1 whose time is stepped: the served one, for clocks whose seconds jump. Never a real one.
 
-Each command is numbered (``reserve`` of HighCmd) and has one moment pass; the state that answers it bears the same
-number. A command that is not answered is said again, and one that was carried out already has no more time pass. A
-real robot does not answer so, and has then only ever been told to stand.
+Each command is numbered (``reserve`` of HighCmd) and has one moment pass, or as many as it says (``band_width``); the
+state that answers it bears the same number. A command that is not answered is said again, and one that was carried out
+already has no more time pass. A real robot does not answer so, and has then only ever been told to stand.
 """
 
 import asyncio
@@ -15,6 +15,8 @@ from reasoned_explorer.vehicles.unitree.limits import CommandLimits
 from reasoned_explorer.vehicles.unitree.messages import HighCommand, HighState, Mode
 from reasoned_explorer.vehicles.unitree.robot import BodyReading, Robot, Velocity
 
+#: So many moments a command lets pass at most.
+MOST_MOMENTS = 1000
 _AGAIN_S = 0.25
 #: Moments in which it gets up or lies down.
 _POSTURE_MOMENTS = 60
@@ -47,14 +49,14 @@ class LockstepGo1(Robot, asyncio.DatagramProtocol):
         self.limits = limits or CommandLimits()
         self.malformed = 0
         self._deadline_s = deadline_s
-        self._number = 0
+        self._number = self._moments = 0
         self._state: HighState | None = None
         self._answer: asyncio.Future[HighState] | None = None
         self._transport: asyncio.DatagramTransport | None = None
 
     def now_s(self) -> float:
         """Return how long the robot's time has gone on since the start."""
-        return self._number * self.period_s
+        return self._moments * self.period_s
 
     @property
     def fixes_due(self) -> int:
@@ -91,6 +93,11 @@ class LockstepGo1(Robot, asyncio.DatagramProtocol):
         state = await self._exchange(self.limits.cut(command_of(velocity)))
         return BodyReading.of(state, self.now_s())
 
+    async def stand(self, moments: int) -> BodyReading:
+        """Have it stand for some moments in one go, at least one and at most `MOST_MOMENTS`."""
+        state = await self._exchange(HighCommand.standing(), max(1, min(moments, MOST_MOMENTS)))
+        return BodyReading.of(state, self.now_s())
+
     async def get_up(self) -> None:
         """Have it rise."""
         for _ in range(_POSTURE_MOMENTS):
@@ -102,10 +109,10 @@ class LockstepGo1(Robot, asyncio.DatagramProtocol):
         """Return what the limits leave of a velocity."""
         return velocity_within(self.limits, velocity)
 
-    async def _exchange(self, command: HighCommand) -> HighState:
+    async def _exchange(self, command: HighCommand, moments: int = 1) -> HighState:
         if self._transport is None:
             raise PartError(self.name, "the link is not open")
-        packet = encode_command(replace(command, reserve=self._number + 1))
+        packet = encode_command(replace(command, reserve=self._number + 1, band_width=moments))
         self._answer = asyncio.get_running_loop().create_future()
         try:
             async with asyncio.timeout(self._deadline_s):
@@ -119,6 +126,7 @@ class LockstepGo1(Robot, asyncio.DatagramProtocol):
             ) from None
         self._state = self._answer.result()
         self._number += 1
+        self._moments += moments
         return self._state
 
     async def _hang_up(self) -> None:

@@ -111,6 +111,15 @@ class Robot(ABC):
             PartError: If nothing is heard of it. It has then been told to stand.
         """
 
+    async def stand(self, moments: int) -> BodyReading:
+        """Have it stand for one or more moments, as many as it can in one go; return what it senses then.
+
+        Raises:
+            PartError: See `moment`.
+        """
+        del moments
+        return await self.moment(None)
+
     @abstractmethod
     async def get_up(self) -> None:
         """Have it rise to its feet.

@@ -166,8 +166,11 @@ class Tracker:
 
     async def stand_for(self, seconds: float) -> None:
         """Stand for some seconds of the robot's time, to the nearest moment."""
-        for _ in range(round(seconds / self.robot.period_s)):
-            await self._moment(None)
+        until_s = self.robot.now_s() + seconds - 0.5 * self.robot.period_s
+        while (left_s := until_s - self.robot.now_s()) > 0.0:
+            # A filter wants every moment's turn rate; legs that stand are reckoned in one go.
+            moments = 1 if self._source is not None else math.ceil(left_s / self.robot.period_s)
+            await self._take(await self.robot.stand(moments))
 
     async def wait_for_position(self) -> str:
         """Stand until the position is good; return why it is not where that takes too long, else nothing."""
@@ -269,7 +272,9 @@ class Tracker:
             way.log.see(self.robot.now_s() - way.began_s, self.here.pose, across_m=across_m)
 
     async def _moment(self, velocity: Velocity | None) -> None:
-        reading = await self.robot.moment(velocity)
+        await self._take(await self.robot.moment(velocity))
+
+    async def _take(self, reading: BodyReading) -> None:
         self.reading = reading
         await self._take_fixes(reading.time_s, due=self.robot.fixes_due)
         self.whereabouts.take(reading)
