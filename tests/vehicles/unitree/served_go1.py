@@ -8,7 +8,7 @@ from reasoned_explorer.geometry import Pose
 from reasoned_explorer.serving.go1.gnss import GnssServer
 from reasoned_explorer.serving.go1.server import Go1Server
 from reasoned_explorer.serving.go1.walker import Walker
-from reasoned_explorer.vehicles import PROFILES
+from reasoned_explorer.vehicles import PROFILES, VehicleProfile
 from reasoned_explorer.vehicles.positioning import Receiver, parse_source
 from reasoned_explorer.vehicles.unitree import LinkSettings
 from reasoned_explorer.vehicles.unitree.vehicle import Go1Vehicle
@@ -16,8 +16,9 @@ from reasoned_explorer.world.atlas import Atlas
 
 HOME = Pose(50.0, 50.0)
 GO1 = PROFILES["go1"]
-#: A busy machine is no lost link: the tests on real time are patient.
-LOST_S = 1.5
+#: A busy machine is no lost link: the tests on real time are patient, and walk slowly.
+LOST_S = 5.0
+SLOW = PROFILES["go1-authors"]
 
 
 class Served:
@@ -70,6 +71,8 @@ def walked(
     clock: Clock | None = None,
     home: Pose = HOME,
     by_receiver: bool = False,
+    profile: VehicleProfile = GO1,
+    lost_s: float = LOST_S,
     **more: Any,
 ) -> Any:
     """Run a script with a driver of the served robot, from its start to its close."""
@@ -77,9 +80,9 @@ def walked(
 
     async def run() -> Any:
         positions = receiver(server, clock) if by_receiver else None
-        link = LinkSettings(local_port=0, command_lifetime_s=LOST_S, lost_after_s=LOST_S)
+        link = LinkSettings(local_port=0, command_lifetime_s=lost_s, lost_after_s=lost_s)
         vehicle = Go1Vehicle(
-            GO1, clock=clock, host="127.0.0.1", port=server.port, home=home, link=link, positions=positions, **more
+            profile, clock=clock, host="127.0.0.1", port=server.port, home=home, link=link, positions=positions, **more
         )
         async with vehicle:
             return await script(vehicle)
