@@ -1,7 +1,7 @@
 """The simulated body, driven by velocities tick by tick, with what its sensors say."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -120,6 +120,7 @@ class WalkedBody(Body):
         if not self._is_resting and self._still >= REST_TICKS:
             self._rest()
             self._is_resting = True
+            self.sensed = replace(self.sensed, forward_mps=0.0, right_mps=0.0)
         return fix
 
     def _carry_on(self, forward_mps: float, right_mps: float, turn_radps: float) -> SatelliteFix | None:

@@ -29,6 +29,8 @@ _LYING_MODES = frozenset({5, 7})
 _FIRST_STATE_S, _LOST_S, _POSTURE_S = 5.0, 0.5, 3.0
 _CALL_S = 3.0
 _LIFETIME_S = 0.3
+#: States nearer to each other in time tell no speed.
+_LEAST_S = 0.005
 _LEG_MOTORS = 12
 
 
@@ -72,6 +74,7 @@ class Go2Robot(Robot):
         self._battery: float | None = None
         self._hottest: float | None = None
         self._last: BodyReading | None = None
+        self._last_s = -math.inf
         self._due_s = 0.0
         self._moves, self._given_s = False, -math.inf
         self._watching: asyncio.Task[None] | None = None
@@ -208,7 +211,7 @@ class Go2Robot(Robot):
 
     def _reading(self) -> BodyReading:
         with self._lock:
-            state, battery, hottest = self._state, self._battery, self._hottest
+            state, heard_s, battery, hottest = self._state, self._heard_s, self._battery, self._hottest
         try:
             numbers = [
                 float(value) for value in (*state.position[:2], state.imu_state.rpy[2], state.imu_state.gyroscope[2])
@@ -219,10 +222,10 @@ class Go2Robot(Robot):
         if not all(map(math.isfinite, numbers)):
             raise PartError(self.name, "a state whose numbers are not finite")
         ahead_m, left_m, yaw_left, rate_left = numbers
-        now_s, yaw_rad = self._now_s(), normalise_heading_rad(0.0 - yaw_left)
-        forward_mps, right_mps = self._speed(ahead_m, 0.0 - left_m, yaw_rad, now_s)
+        yaw_rad = normalise_heading_rad(0.0 - yaw_left)
+        forward_mps, right_mps = self._speed(ahead_m, 0.0 - left_m, yaw_rad, heard_s)
         reading = BodyReading(
-            now_s,
+            self._now_s(),
             0.0 - rate_left,
             forward_mps,
             right_mps,
@@ -233,15 +236,16 @@ class Go2Robot(Robot):
             battery_percent=battery,
             hottest_motor_c=hottest,
         )
-        self._last = reading
+        self._last, self._last_s = reading, heard_s
         return reading
 
-    def _speed(self, ahead_m: float, aside_m: float, yaw_rad: float, now_s: float) -> tuple[float, float]:
+    def _speed(self, ahead_m: float, aside_m: float, yaw_rad: float, heard_s: float) -> tuple[float, float]:
         """Return the body's velocity by where its legs took it; in which frame ``velocity`` is, its docs leave open."""
-        last = self._last
-        if last is None or now_s - last.time_s < 1e-3:
+        last, period_s = self._last, heard_s - self._last_s
+        if last is None:
             return 0.0, 0.0
-        period_s = now_s - last.time_s
+        if period_s < _LEAST_S:  # nothing new was heard: it has not stopped for that
+            return last.forward_mps, last.right_mps
         along, across = (ahead_m - last.ahead_m) / period_s, (aside_m - last.aside_m) / period_s
         middle = last.yaw_rad + 0.5 * bearing_between_rad(last.yaw_rad, yaw_rad)
         sin_y, cos_y = math.sin(middle), math.cos(middle)
