@@ -230,7 +230,7 @@ def test_on_real_time_it_walks_by_its_receiver(atlas):
         leg = await vehicle.go_to(Pose(50.6, 50.0, 0.0, math.pi / 2))
         return leg, vehicle.pose, body_of(server)
 
-    with served(atlas, lockstep=False, silence_s=LOST_S, dialect="nmea", start=EAST) as server:
+    with served(atlas, lockstep=False, silence_s=LOST_S, dialect="gpsd", start=EAST) as server:
         leg, pose, true = on_real_time(server, script, by_receiver=True)
     assert leg.outcome is LegOutcome.ARRIVED, leg
     assert pose.distance_to_m(true.x_m, true.y_m) < 0.3
