@@ -131,3 +131,17 @@ def test_bad_settings_are_all_named_at_once():
             turn_acceleration_radps2=1.0,
         )
     assert len(caught.value.faults) == 3
+
+
+def test_turning_in_place_stays_where_it_is():
+    settings = FollowerSettings.of(PROFILES["go1"])
+    follower, pose = PidFollower(settings), Pose(3.0, 4.0, 0.0, 0.5)
+    follower.face(pose, 1.5)
+    for _ in range(400):
+        command = follower.step(pose, yaw_rate_radps=0.0, dt_s=0.05)
+        assert (command.forward_mps, command.right_mps) == (0.0, 0.0)
+        pose = pose.facing(pose.heading_rad + 0.05 * command.yaw_rate_radps)
+        if command.phase is Phase.ARRIVED:
+            break
+    assert command.phase is Phase.ARRIVED
+    assert pose.heading_rad == pytest.approx(1.5, abs=settings.facing_rad)

@@ -1,14 +1,26 @@
-"""A served AirSim in a thread of its own, for programs that are its clients at the same time."""
+"""A server in a thread of its own, for programs that are its clients at the same time."""
 
 import asyncio
 import threading
 from collections.abc import Callable
-from typing import Self
-
-from reasoned_explorer.serving.airsim.server import AirSimServer
+from typing import Generic, Protocol, Self, TypeVar
 
 
-class BackgroundServer:
+class Served(Protocol):
+    """What can be served."""
+
+    async def start(self, host: str, port: int) -> int:
+        """Listen; return the port."""
+        ...
+
+    async def close(self) -> None:
+        """Hang up on everybody."""
+
+
+S = TypeVar("S", bound=Served)
+
+
+class BackgroundServer(Generic[S]):
     """Serves while the `with` block runs.
 
     Args:
@@ -17,17 +29,17 @@ class BackgroundServer:
         port: On which port; 0 for a free one, which `port` then tells.
     """
 
-    def __init__(self, make: Callable[[], AirSimServer], *, host: str = "127.0.0.1", port: int = 0) -> None:
+    def __init__(self, make: Callable[[], S], *, host: str = "127.0.0.1", port: int = 0) -> None:
         self._make, self._host, self.port = make, host, port
-        self._thread = threading.Thread(target=self._run, name="served AirSim", daemon=True)
+        self._thread = threading.Thread(target=self._run, name="served simulator", daemon=True)
         self._up = threading.Event()
         self._error: BaseException | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
         self._stop: asyncio.Event | None = None
-        self._server: AirSimServer | None = None
+        self._server: S | None = None
 
     @property
-    def server(self) -> AirSimServer:
+    def server(self) -> S:
         """The server; only its own thread may change anything about it."""
         if self._server is None:
             raise AssertionError

@@ -196,6 +196,15 @@ class PidFollower:
         heading = target.heading_rad if face else math.nan
         kernels.follower_start(self._memory, pose.x_m, pose.y_m, target.x_m, target.y_m, heading, kernels.PHASE_DRIVE)
 
+    def face(self, pose: Pose, heading_rad: float) -> None:
+        """Set off to turn in place, to a heading.
+
+        Raises:
+            SettingsError: If a coordinate is not finite.
+        """
+        self.start(pose, pose.facing(heading_rad))
+        self._memory[kernels.MEM_PHASE] = kernels.PHASE_FACE
+
     def step(self, pose: Pose, *, yaw_rate_radps: float, dt_s: float) -> Command:
         """Return the next command.
 

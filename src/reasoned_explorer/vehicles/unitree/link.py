@@ -137,15 +137,16 @@ class Go1Link(asyncio.DatagramProtocol):
             raise PartError(_PART, f"no link to {self.host}:{self.port}: {error}") from error
         self._sender = asyncio.create_task(self._keep_sending())
 
-    async def close(self) -> None:
-        """Say that the robot is to stand, and close the link. Safe to call twice."""
+    async def close(self, *, farewell: HighCommand | None = None) -> None:
+        """Say that the robot is to stand, or what else it is to be left at, and close the link. Safe to call twice."""
+        last = self._stand if farewell is None else encode_command(self.limits.cut(farewell))
         if self._sender is not None:
             self._sender.cancel()
             await asyncio.gather(self._sender, return_exceptions=True)
             self._sender = None
         if self._transport is not None:
             for _ in range(_FAREWELLS):
-                self._transport.sendto(self._stand)
+                self._transport.sendto(last)
             self._transport.close()
             self._transport = None
 
