@@ -38,6 +38,7 @@ class Mover(FakeVehicle):
         self.connected = False
         self.image = None
         self._going = None
+        self._pose = Pose(0.0, 0.0, 1.5, math.pi / 2)
 
     async def connect(self):
         self.connected = True
@@ -49,7 +50,7 @@ class Mover(FakeVehicle):
         whole_m = max(1e-9, here.distance_to_m(target.x_m, target.y_m))
         share = min(1.0, (self.clock.now_s() - begun_s) / whole_m)
         x, y = here.x_m + share * (target.x_m - here.x_m), here.y_m + share * (target.y_m - here.y_m)
-        return Telemetry(Pose(x, y, here.z_m, target.heading_rad), **{"speed_mps": 1.0, **self.told})
+        return Telemetry(Pose(x, y, here.z_m, here.heading_rad), **{"speed_mps": 1.0, **self.told})
 
     async def look(self, headings_rad):
         views = await super().look(headings_rad)
