@@ -190,6 +190,19 @@ def test_a_person_may_decline_a_leg():
     assert (leg.detail, mover.legs, asked) == ("declined: a person declined the leg", 0, [(0.0, 10.0)])
 
 
+def test_a_stop_while_a_person_is_asked_counts():
+    async def script(guard, mover):
+        async def confirm(here, there):
+            guard.stop.press()
+            return True
+
+        guard._confirm = confirm
+        return await guard.go_to(EAST)
+
+    leg, _, mover = with_guard(script)
+    assert (leg.detail[:8], mover.legs) == ("operator", 0)
+
+
 def test_a_dry_run_connects_plans_and_never_moves():
     async def script(guard, mover):
         return await guard.go_to(EAST)
