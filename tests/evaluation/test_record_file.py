@@ -12,6 +12,7 @@ from reasoned_explorer.model import LegOutcome, RecordError, RecordWriteError, T
 from reasoned_explorer.model.record import (
     ChoiceRecord,
     FrontierRecord,
+    InterventionRecord,
     LegRecord,
     MissionEnd,
     MissionHeader,
@@ -220,3 +221,14 @@ def test_a_folder_that_cannot_be_written_to_is_an_error_in_words(tmp_path: Path)
     tmp_path.chmod(0o500)
     with pytest.raises(RecordError, match="cannot be written"):
         RecordWriter(tmp_path / "run")
+
+
+def test_interventions_are_kept_and_records_without_any_stay_as_they_were(tmp_path: Path) -> None:
+    event = InterventionRecord(4.5, "link", "nothing heard of the machine for 0.7 s", "stopped")
+    with RecordWriter(tmp_path) as writer:
+        writer.header(HEADER)
+        writer.step(STEP)
+        writer.step(replace(STEP, step=1, interventions=(event,)))
+    lines = (tmp_path / RECORD_NAME).read_bytes().splitlines()
+    assert [b"interventions" in line for line in lines] == [False, False, True]
+    assert [step.interventions for step in read_record(tmp_path).steps] == [(), (event,)]

@@ -5,8 +5,8 @@ One more vehicle is one more entry in `MACHINES`.
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field as made_by
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
 
 from reasoned_explorer.clock import Clock, VirtualClock
 from reasoned_explorer.geometry import Pose
@@ -23,8 +23,8 @@ from reasoned_explorer.world.world import Building
 from tests.world.worlds import box, field
 
 #: A meadow of 100 m with a house in the north.
-HOUSE = box(40.0, 75.0, 60.0, 85.0)
-START = Pose(50.0, 30.0, 0.0, 0.0)
+HOUSE = box(40.0, 62.0, 60.0, 75.0)
+START = Pose(50.0, 50.0, 0.0, 0.0)
 
 
 def meadow() -> Atlas:
@@ -55,7 +55,6 @@ class Ready:
     true_pose: Callable[[], Pose]
     simulated_s: Callable[[], float]
     range_ahead_m: Callable[[Pose], float | None] | None = None
-    vehicle: list[Vehicle] = made_by(default_factory=list)
 
 
 @contextmanager
@@ -103,9 +102,23 @@ def airsim(atlas: Atlas, profile: str, mishaps: Sequence[Mishap]) -> Iterator[Re
         yield Ready(make, PROFILES[profile], clock, true_pose, lambda: served.server.simulator.now_s)
 
 
-#: Name, how to make it, its profile, and the faults that do not exist for it, each with the reason.
-MACHINES: dict[str, tuple[Callable[..., object], str, dict[str, str]]] = {
-    "embedded drone": (embedded, "drone", {}),
-    "embedded walker": (embedded, "go1", {}),
-    "AirSim drone": (airsim, "drone", {"battery low": "AirSim's drones have no battery"}),
+@dataclass
+class Machine:
+    """An entry of the table.
+
+    Attributes:
+        make: Makes it ready for a world, a profile and what befalls it.
+        profile: By name.
+        lacks: The faults that do not exist for it, each with the reason.
+    """
+
+    make: Callable[[Atlas, str, Sequence[Mishap]], AbstractContextManager[Ready]]
+    profile: str
+    lacks: dict[str, str]
+
+
+MACHINES = {
+    "embedded drone": Machine(embedded, "drone", {}),
+    "embedded walker": Machine(embedded, "go1", {}),
+    "AirSim drone": Machine(airsim, "drone", {"battery low": "AirSim's drones have no battery"}),
 }

@@ -203,6 +203,8 @@ class GuardedVehicle(Vehicle):
             declined = Finding(Cause.DECLINED, "a person declined the leg")
             self._note(declined, "refused")
             return self._no_leg(aim, declined)
+        if self.stop.pressed:  # while the person was asked
+            return await self._refused_leg(target, Finding(Cause.OPERATOR, self.stop.why))
         leg, found = await self._leg(aim)
         if found is not None and found.cause is Cause.BATTERY:
             leg = await self._bring_home(leg, found)
