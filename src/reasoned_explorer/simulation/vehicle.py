@@ -145,7 +145,7 @@ class SimulatedVehicle(Vehicle):
         self._eyes, self._painter = eyes, painter
         self._faults = dict(faults or {})
         self.noise = sensor_noise(noise) if isinstance(noise, str) else noise
-        ground = None if profile.flies or not profile.collides else _ground_on_foot(atlas)
+        ground = None if profile.flies or not profile.collides else ground_on_foot(atlas)
         self._body = Body(profile, self.noise, start, seed=seed, bounds=atlas.world.bounds, ground=ground)
         self._motions = 0
         self._legs = 0
@@ -320,8 +320,8 @@ def obstacles_on_leg(
     return atlas.sight.obstacles_near(here.x_m, here.y_m, there.x_m, there.y_m, z_m=z_m, margin_m=margin_m)
 
 
-def _ground_on_foot(atlas: "Atlas") -> Ground:
-    """What stops a walker. Buildings do not: their walls are known more exactly than a raster's cells."""
+def ground_on_foot(atlas: "Atlas") -> Ground:
+    """Return what stops a walker. Buildings do not: their walls are known more exactly than a raster's cells."""
     blocked: NDArray[np.bool_] = np.zeros(256, np.bool_)
     blocked[[int(kind) for kind in IMPASSABLE_ON_FOOT - {GroundKind.BUILDING}]] = True
     raster = atlas.ground
