@@ -75,8 +75,7 @@ def test_mavutil_reads_and_sets_parameters(atlas):
     with served_as(atlas, "arducopter") as served:
         made, _ = connected(served, "udpout")
         made.param_fetch_all()
-        while not made.param_fetch_complete:
-            made.recv_match(blocking=True, timeout=1.0)
+        until(made, lambda _: len(made.params) == len(served.server.pilot.parameters), "PARAM_VALUE")
         assert set(made.params) == set(served.server.pilot.parameters.names)
         assert made.params.mavset(made, "WPNAV_SPEED", 250.0)
         assert served.server.pilot.parameters["WPNAV_SPEED"].value == 250.0
