@@ -72,12 +72,14 @@ def test_mavutil_arms_takes_off_flies_and_lands(atlas, wire, to):
 
 
 def test_mavutil_reads_and_sets_parameters(atlas):
+    from pymavlink import mavparm
+
     with served_as(atlas, "arducopter") as served:
         made, _ = connected(served, "udpout")
         made.param_fetch_all()
         until(made, lambda _: len(made.params) == len(served.server.pilot.parameters), "PARAM_VALUE")
         assert set(made.params) == set(served.server.pilot.parameters.names)
-        assert made.params.mavset(made, "WPNAV_SPEED", 250.0)
+        assert mavparm.MAVParmDict().mavset(made, "WPNAV_SPEED", 250.0)
         assert served.server.pilot.parameters["WPNAV_SPEED"].value == 250.0
         made.close()
 
