@@ -2,6 +2,7 @@
 
 import asyncio
 import math
+import socket
 from dataclasses import replace
 
 import pytest
@@ -150,6 +151,23 @@ def test_positions_and_targets_may_be_on_earth(atlas):
         leg, pose = flown(served, script, settings=replace(SETTINGS, origin=origin))
     assert leg.outcome is LegOutcome.ARRIVED
     assert (pose.x_m, pose.y_m) == pytest.approx((56.0, 53.0), abs=0.5)
+
+
+def test_it_listens_as_a_ground_station_does(atlas):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+
+    async def run():
+        vehicle = MavlinkVehicle(
+            PROFILES["drone"], clock=clock, address=f"udpin:127.0.0.1:{port}", home=HOME, settings=SETTINGS
+        )
+        async with vehicle:
+            return await vehicle.go_to(Pose(53.0, 50.0))
+
+    clock = VirtualClock()
+    with serve(atlas, station=("127.0.0.1", port), speed=AS_FAST_AS_ASKED):
+        assert clock.run(run()).outcome is LegOutcome.ARRIVED
 
 
 # On a real clock.
