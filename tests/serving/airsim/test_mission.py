@@ -8,8 +8,8 @@ from reasoned_explorer.evaluation.mission import Mission, MissionSettings
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.model import LegOutcome
 from reasoned_explorer.model.record import EpisodeRecord, MissionEnd
-from reasoned_explorer.serving.airsim.background import BackgroundServer
 from reasoned_explorer.serving.airsim.server import AS_FAST_AS_ASKED, AirSimServer
+from reasoned_explorer.serving.background import BackgroundServer
 from reasoned_explorer.simulation.eyes import Eyes
 from reasoned_explorer.vehicles.airsim.settings import DriverSettings
 from reasoned_explorer.vehicles.airsim.vehicle import AirSimVehicle

@@ -15,8 +15,8 @@ import pytest
 from PIL import Image
 
 from reasoned_explorer.geometry import Pose
-from reasoned_explorer.serving.airsim.background import BackgroundServer
 from reasoned_explorer.serving.airsim.server import AS_FAST_AS_ASKED, AirSimServer
+from reasoned_explorer.serving.background import BackgroundServer
 from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.opening import open_world
 

@@ -12,8 +12,8 @@ from reasoned_explorer.clock import RealClock, SteppedClock, VirtualClock
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import LegOutcome, PartError, SettingsError
 from reasoned_explorer.model.stopping import listening
-from reasoned_explorer.serving.airsim.background import BackgroundServer
 from reasoned_explorer.serving.airsim.server import AS_FAST_AS_ASKED, AirSimServer
+from reasoned_explorer.serving.background import BackgroundServer
 from reasoned_explorer.vehicles import PROFILES
 from reasoned_explorer.vehicles.airsim.settings import DriverSettings
 from reasoned_explorer.vehicles.airsim.vehicle import AirSimVehicle

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 from reasoned_explorer.clock import Clock, VirtualClock
 from reasoned_explorer.geometry import Pose
-from reasoned_explorer.serving.airsim.background import BackgroundServer
 from reasoned_explorer.serving.airsim.server import AS_FAST_AS_ASKED, AirSimServer
+from reasoned_explorer.serving.background import BackgroundServer
 from reasoned_explorer.simulation.mishaps import Mishap, MishapKind
 from reasoned_explorer.simulation.sighting import ViewContent
 from reasoned_explorer.simulation.vehicle import SimulatedVehicle

@@ -13,8 +13,9 @@ from reasoned_explorer.serving.airsim.flight import Flight, Floats, Hit, State
 from reasoned_explorer.serving.airsim.scenery import name_of_disc, name_of_wall
 from reasoned_explorer.simulation.motion import NO_DISCS, NO_WALLS, Body, End, Motion
 from reasoned_explorer.simulation.sensors import SensorNoise, sensor_noise
-from reasoned_explorer.simulation.vehicle import check_start, obstacles_on_leg
+from reasoned_explorer.simulation.vehicle import check_start, ground_on_foot, obstacles_on_leg
 from reasoned_explorer.vehicles.profile import VehicleProfile
+from reasoned_explorer.world.taxonomy import Ground as GroundKind
 
 if TYPE_CHECKING:
     from reasoned_explorer.world.atlas import Atlas
@@ -79,8 +80,9 @@ class Drone:
 
     def reset(self) -> None:
         """Stand at the start again, as if nothing had been."""
-        bounds = self.atlas.world.bounds
-        self._body = Body(self.profile, self._noise, self.start, seed=self._seed, bounds=bounds)
+        bounds, profile = self.atlas.world.bounds, self.profile
+        ground = None if profile.flies or not profile.collides else ground_on_foot(self.atlas)
+        self._body = Body(profile, self._noise, self.start, seed=self._seed, bounds=bounds, ground=ground)
         self._z_m = 0.0
         self._flight: Flight | None = None
         self._motions = 0
@@ -257,7 +259,8 @@ class Drone:
         number, saved, here = self._next_motion(), self._body.save(), self._body.true_pose
         noise = self._noise
         margin_m = _MARGIN_M + 4.0 * (noise.position_sigma_m + noise.wander_sigma_m)
-        near = obstacles_on_leg(self.atlas, self.profile, here, target, margin_m=margin_m, z_m=z_m)
+        at_m = z_m if self.profile.flies else None
+        near = obstacles_on_leg(self.atlas, self.profile, here, target, margin_m=margin_m, z_m=at_m)
         walls, discs = (NO_WALLS, NO_DISCS) if near is None else (near.walls, near.discs)
 
         def again(limit_s: float | None) -> Motion:
@@ -276,10 +279,13 @@ class Drone:
 
     def _hit(self, leg: _Leg, rows: Floats) -> Hit | None:
         end, row, near = leg.motion.end, leg.motion.hit, leg.near
-        if near is None or end not in {End.WALL, End.DISC}:
-            return None
         world = self.atlas.world
-        name = name_of_wall(world, near, row) if end is End.WALL else name_of_disc(world, near, row)
+        if end is End.GROUND:
+            name = GroundKind(row).noun
+        elif near is None or end not in {End.WALL, End.DISC}:
+            return None
+        else:
+            name = name_of_wall(world, near, row) if end is End.WALL else name_of_disc(world, near, row)
         _, x_m, y_m, z_m, heading_rad = rows[-1].tolist()
         if len(rows) > 1:
             dx, dy = (rows[-1, 1:3] - rows[0, 1:3]).tolist()

@@ -14,11 +14,11 @@ from reasoned_explorer.geometry.frames import is_finite
 from reasoned_explorer.model import Camera, Fault, Leg, LegOutcome, PartError, SettingsError, View
 from reasoned_explorer.vehicles.airsim.api import AirSimApi, Moment
 from reasoned_explorer.vehicles.airsim.conventions import HomeFrame
-from reasoned_explorer.vehicles.airsim.legs import LegWatch
 from reasoned_explorer.vehicles.airsim.pace import Pace, pace_of
 from reasoned_explorer.vehicles.airsim.rpc import Pending, RpcClient
 from reasoned_explorer.vehicles.airsim.senses import Senses
 from reasoned_explorer.vehicles.airsim.settings import DriverSettings
+from reasoned_explorer.vehicles.control.legs import LegWatch
 from reasoned_explorer.vehicles.profile import VehicleProfile
 from reasoned_explorer.vehicles.safety.telemetry import Telemetry
 from reasoned_explorer.vehicles.vehicle import Vehicle

@@ -1,4 +1,4 @@
-"""A server in a thread of its own, for programs that are its clients at the same time."""
+"""A served machine in a thread of its own, for programs that are its clients at the same time."""
 
 import asyncio
 import threading
@@ -7,14 +7,14 @@ from typing import Generic, Protocol, Self, TypeVar
 
 
 class Served(Protocol):
-    """What can be served."""
+    """A server that listens from `start` to `close`."""
 
-    async def start(self, host: str, port: int) -> int:
+    async def start(self, host: str = ..., port: int = ...) -> int:
         """Listen; return the port."""
         ...
 
     async def close(self) -> None:
-        """Hang up on everybody."""
+        """Hang up on everybody and stop."""
 
 
 S = TypeVar("S", bound=Served)
@@ -31,7 +31,7 @@ class BackgroundServer(Generic[S]):
 
     def __init__(self, make: Callable[[], S], *, host: str = "127.0.0.1", port: int = 0) -> None:
         self._make, self._host, self.port = make, host, port
-        self._thread = threading.Thread(target=self._run, name="served simulator", daemon=True)
+        self._thread = threading.Thread(target=self._run, name="served machine", daemon=True)
         self._up = threading.Event()
         self._error: BaseException | None = None
         self._loop: asyncio.AbstractEventLoop | None = None

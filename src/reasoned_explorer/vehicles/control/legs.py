@@ -2,21 +2,56 @@
 
 import math
 from dataclasses import dataclass, field
+from typing import Protocol
 
 from reasoned_explorer.geometry import Pose, bearing_between_rad
 from reasoned_explorer.model import Leg, LegOutcome, TrackPoint
-from reasoned_explorer.vehicles.airsim.api import Moment
-from reasoned_explorer.vehicles.airsim.settings import DriverSettings
 
 #: Slower than this it stands, metres a second.
 _STANDING_MPS = 0.2
-#: A machine that stands at its target for so long more than it settles is there, whatever the simulator says.
+#: A machine that stands at its target for so long more than it settles is there, whatever else is said.
 _PATIENCE_S = 1.0
+
+
+class Moment(Protocol):
+    """Where a vehicle takes itself to be at a moment."""
+
+    @property
+    def t_s(self) -> float:
+        """When, seconds of the vehicle's time."""
+
+    @property
+    def believed(self) -> Pose:
+        """Where."""
+
+    @property
+    def speed_mps(self) -> float:
+        """How fast its body moves."""
+
+
+class LegLimits(Protocol):
+    """What counts as arrived and as stuck."""
+
+    @property
+    def arrival_m(self) -> float:
+        """So near the target, or past the line across the way through it, the vehicle has arrived."""
+
+    @property
+    def facing_rad(self) -> float:
+        """How well the final heading is met."""
+
+    @property
+    def stuck_s(self) -> float:
+        """Seconds without progress that mean "stuck"."""
+
+    @property
+    def stuck_m(self) -> float:
+        """What counts as progress, metres."""
 
 
 @dataclass(slots=True)
 class LegWatch:
-    """Watches a leg. Times are the server's seconds.
+    """Watches a leg. Times are the vehicle's seconds.
 
     Attributes:
         target: Where to.
@@ -27,7 +62,7 @@ class LegWatch:
     """
 
     target: Pose
-    settings: DriverSettings
+    settings: LegLimits
     settle_s: float
     started_s: float
     first: Moment

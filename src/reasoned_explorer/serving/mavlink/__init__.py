@@ -1,0 +1,1 @@
+"""The embedded simulator, answering as an autopilot that speaks MAVLink does."""

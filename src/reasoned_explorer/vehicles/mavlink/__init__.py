@@ -1,0 +1,1 @@
+"""MAVLink: autopilots of ArduPilot and PX4, and a drone or rover that is driven through one."""

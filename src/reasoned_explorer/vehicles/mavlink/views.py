@@ -1,0 +1,25 @@
+"""What looks for a machine behind MAVLink: its pictures do not come over that wire."""
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reasoned_explorer.geometry import Pose
+from reasoned_explorer.model import Camera
+
+#: Says what a simulator knows to be in a view that a camera takes at a pose; for simulated captioners only.
+Content = Callable[[Pose, Camera], object]
+
+
+class PictureSource(Protocol):
+    """What takes pictures."""
+
+    async def take(self, bearing_rad: float) -> NDArray[np.uint8]:
+        """Return a picture, RGB, of what lies at a bearing from straight ahead; called in the live loop.
+
+        Raises:
+            PartError: If there is none.
+        """
+        ...
