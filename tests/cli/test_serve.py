@@ -39,13 +39,14 @@ def _rex(*arguments: str) -> tuple[int, str]:
 @contextmanager
 def _serving(*options: str) -> Iterator[tuple["subprocess.Popen[str]", str]]:
     """Serve on a free port until the block ends; gives the process and the address."""
-    command = [sys.executable, "-m", "reasoned_explorer", "serve", "--as", "airsim", "--port", "0", *options]
+    wire = () if "--as" in options else ("--as", "airsim")
+    command = [sys.executable, "-m", "reasoned_explorer", "serve", *wire, "--port", "0", *options]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
         assert process.stdout is not None
         try:
             for line in process.stdout:
                 if found := re.search(r" at (127\.0\.0\.1:\d+);", line):
-                    yield process, f"airsim://{found[1]}"
+                    yield process, f"mavlink:udpout:{found[1]}" if "mavlink" in options else f"airsim://{found[1]}"
                     break
             else:
                 pytest.fail("it does not serve")
@@ -76,6 +77,26 @@ def test_a_mission_over_the_wire_is_the_mission_in_process() -> None:
     assert [step["choice"] for step in wire] == [step["choice"] for step in here]
 
 
+def test_so_it_is_by_mavlink_once_a_person_says_that_it_may_move() -> None:
+    pytest.importorskip("pymavlink", reason="what MAVLink is spoken with is not installed")
+    mission = [*MISSION, "--start", "0,0,0", "--clock", "virtual"]
+    with _serving(*WORLD, "--as", "mavlink", "--seed", "5", "--speed", "max", "--start", "0,0,0") as (_, address):
+        code, shown = _rex("run", *mission, "--vehicle", address, "--out", "refused")
+        assert code == 2, shown
+        assert "a real machine may be at" in shown
+        code, shown = _rex("vehicle", "check", address, "--fence", "50")
+        assert code == 3, shown
+        assert re.search(r"ok +battery", shown)
+        code, shown = _rex("run", *mission, "--vehicle", address, "--dry-run", "--out", "dry")
+        assert code == 1, shown
+        assert "0 m travelled" in shown
+    with _serving(*WORLD, "--as", "mavlink", "--seed", "5", "--speed", "max", "--start", "0,0,0") as (_, address):
+        code, shown = _rex("run", *mission, "--vehicle", address, "--move", "--out", "wire")
+        assert code == 1, shown
+    assert _rex("run", *mission, "--out", "here")[0] == 1
+    assert [step["choice"] for step in _steps("wire")] == [step["choice"] for step in _steps("here")]
+
+
 def test_a_vehicle_in_another_world_is_refused() -> None:
     with _serving(*WORLD, "--speed", "max") as (_, address):
         code, shown = _rex("run", "Find me a bench", "--world", "plaza:4@200", "--vehicle", address)
@@ -100,6 +121,11 @@ def test_all_that_is_wrong_is_told_at_once() -> None:
     assert "6 faults" in shown
     assert all(f"'{name}'" in shown for name in ("foo", "nowhere", "x", "y", "z"))
     assert "99999" in shown
+    code, shown = _rex("serve", "--as", "mavlink", "--flavour", "kite", "--station", "here")
+    assert code == 2, shown
+    assert "2 faults" in shown
+    assert "'kite'" in shown
+    assert "'here'" in shown
 
 
 def test_a_port_that_is_taken_is_told() -> None:

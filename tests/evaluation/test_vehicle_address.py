@@ -4,12 +4,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reasoned_explorer.evaluation.vehicle_address import VehicleAddress, start_at, vehicle_address
+from reasoned_explorer.evaluation.vehicle_address import (
+    AirSimAddress,
+    MavlinkAddress,
+    VehicleAddress,
+    start_at,
+    vehicle_address,
+)
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import InputError, SettingsError
 from reasoned_explorer.vehicles.airsim.place import ServedPlace
+from reasoned_explorer.vehicles.mavlink.address import Address, Wire
 
-HERE = VehicleAddress("airsim", "127.0.0.1", 41451, "drone")
+HERE = AirSimAddress("127.0.0.1")
 
 
 @pytest.mark.parametrize(
@@ -18,9 +25,11 @@ HERE = VehicleAddress("airsim", "127.0.0.1", 41451, "drone")
         ("airsim://127.0.0.1", HERE),
         ("airsim://127.0.0.1:41451/", HERE),
         (" AirSim://127.0.0.1 ", HERE),
-        ("airsim://sim.lan:9", VehicleAddress("airsim", "sim.lan", 9, "drone")),
-        ("airsim://[::1]:9", VehicleAddress("airsim", "::1", 9, "drone")),
-        ("drone-authors@airsim://127.0.0.1", VehicleAddress("airsim", "127.0.0.1", 41451, "drone-authors")),
+        ("airsim://sim.lan:9", AirSimAddress("sim.lan", 9)),
+        ("airsim://[::1]:9", AirSimAddress("::1", 9)),
+        ("mavlink:udpin:192.168.1.2:14550", MavlinkAddress(Address(Wire.UDP_IN, "192.168.1.2", 14550))),
+        ("go1@mavlink:/dev/ttyACM0:57600", MavlinkAddress(Address(Wire.SERIAL, "/dev/ttyACM0", 57600), "go1")),
+        ("drone-authors@airsim://127.0.0.1", AirSimAddress("127.0.0.1", 41451, "drone-authors")),
     ],
 )
 def test_an_address_is_read(text: str, address: VehicleAddress) -> None:
@@ -44,6 +53,11 @@ def test_the_name_of_a_profile_is_none(name: str) -> None:
         "airsim://user@host",
         "airsim://host?x=1",
         "ship://host",
+        "airsim:host",
+        "mavlink:",
+        "mavlink://host:14550",
+        "mavlink:udpin:host",
+        "nobody@mavlink:tcp:host:5760",
         "go1@airsim://host",
         "nobody@airsim://host",
         "airsim://[::1",
@@ -59,6 +73,7 @@ def test_any_text_is_an_address_or_none_or_refused(text: str) -> None:
     try:
         vehicle_address(text)
         vehicle_address(f"airsim://{text}")
+        vehicle_address(f"mavlink:{text}")
     except InputError:
         pass
 
@@ -70,3 +85,8 @@ def test_a_mission_begins_where_the_vehicle_stands_in_its_world() -> None:
         start_at(place, "def", HERE)
     with pytest.raises(SettingsError, match="--start"):
         start_at(None, "abc", HERE)
+
+
+def test_only_what_may_be_real_asks_whether_it_may_move() -> None:
+    assert not HERE.may_be_real
+    assert MavlinkAddress(Address(Wire.TCP, "127.0.0.1", 5760)).may_be_real

@@ -77,13 +77,20 @@ def run(
     checker: Annotated[str | None, typer.Option(help="Who notices the goal, if not --minds.")] = None,
     captioner: Annotated[str, typer.Option(help="Who says what is seen; see rex names.")] = "noisy",
     vehicle: Annotated[
-        str, typer.Option(help="A vehicle profile (see rex names), or where a vehicle is reached: airsim://HOST:41451.")
+        str,
+        typer.Option(
+            help="A vehicle profile (see rex names), or where a vehicle is reached: airsim://HOST:41451, "
+            "mavlink:udpin:0.0.0.0:14550 …"
+        ),
     ] = "drone",
     fence: Fence = None,
     max_speed: MaxSpeed = None,
     dry_run: Annotated[
         bool,
         typer.Option("--dry-run", help="A vehicle at an address looks, and it says where it would go; it stands."),
+    ] = False,
+    move: Annotated[
+        bool, typer.Option("--move", help="Yes, the machine at the address may be armed and move, also a real one.")
     ] = False,
     confirm: Annotated[
         bool, typer.Option("--confirm", help="Ask at the terminal before each leg of a vehicle at an address.")
@@ -150,7 +157,9 @@ def run(
             evaluator=evaluator,
             checker=checker,
             captioner=captioner,
-            vehicle=VehicleOptions(vehicle, fence_m=fence, max_speed_mps=max_speed, dry_run=dry_run, confirm=confirm),
+            vehicle=VehicleOptions(
+                vehicle, fence_m=fence, max_speed_mps=max_speed, dry_run=dry_run, confirm=confirm, move=move
+            ),
             latency=latency,
             clock=clock,
             views=views,

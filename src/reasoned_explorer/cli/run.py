@@ -3,6 +3,7 @@
 import asyncio
 import math
 import re
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -106,13 +107,20 @@ class RunOptions:
             eyes=self.eyes,
         )
         # Models that are called take real seconds.
-        settings = replace(settings, clock=self.clock or ("mixed" if models_of(settings) else "virtual"))
+        settings = replace(settings, clock=self.clock or self._usual_clock(models_of(settings)))
         found.add(*errors_of(settings))
         self.models.check(settings, found)
         if self.planner in BOUND_METHODS or "+" in self.planner or ":" in self.planner or "@" in self.planner:
             fault = Fault(f"{self.planner!r}", "a planner by its name alone", "it may be a row of rex bench --planners")
             found.add(SettingsError("--planner", [fault]))
         return settings
+
+    def _usual_clock(self, models: Sequence[str]) -> str:
+        with suppress(InputError):
+            address = self.vehicle.address
+            if address is not None and address.may_be_real:
+                return "real"
+        return "mixed" if models else "virtual"
 
     def _explorer(self) -> ExplorerSettings:
         return ExplorerSettings(

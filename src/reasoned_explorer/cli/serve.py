@@ -10,20 +10,24 @@ from reasoned_explorer.cli.answers import complain
 from reasoned_explorer.cli.console import Output
 from reasoned_explorer.cli.parsing import BoxDeg, check_start_form, parse_bbox, parse_start
 from reasoned_explorer.geometry import Pose
-from reasoned_explorer.model import Fault, Gathering, SettingsError, StartError
+from reasoned_explorer.model import Fault, Gathering, SettingsError, StartError, UnknownNameError
 from reasoned_explorer.model.checks import is_within
 from reasoned_explorer.model.stopping import on_stop, stop_if_asked
 from reasoned_explorer.serving.airsim.server import AS_FAST_AS_ASKED, AirSimServer
 from reasoned_explorer.serving.airsim.settings import AirSimSettings
+from reasoned_explorer.serving.background import Served
 from reasoned_explorer.simulation.sensors import sensor_noise
 from reasoned_explorer.simulation.vehicle import check_start
 from reasoned_explorer.vehicles import VehicleProfile
+from reasoned_explorer.vehicles.mavlink.flavours import FLAVOURS
 from reasoned_explorer.vehicles.registry import vehicle_profile
 from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.opening import check_world_name, open_world_with_notes
+from reasoned_explorer.world.world import World
 
 #: Whose wires are spoken.
-WIRES = ("airsim",)
+WIRES = ("airsim", "mavlink")
+_PORTS = {"airsim": 41451, "mavlink": 14550}
 _SPEEDS = (1e-3, 1e4)
 #: A free spot is looked for on rings around the middle, metres.
 _RING_M, _FARTHEST_M = 2.0, 400.0
@@ -38,7 +42,7 @@ class ServeOptions:
     bbox: str | None
     start: str | None
     seed: int
-    vehicle: str
+    vehicle: str | None
     host: str
     port: int | None
     speed: str | None
@@ -46,9 +50,17 @@ class ServeOptions:
     settings: Path | None
     generation: int
     conditions: str
+    flavour: str = "arducopter"
+    station: str | None = None
 
-    def checked(self) -> tuple[BoxDeg | None, float | None, AirSimSettings | None]:
-        """Return bounding box, speed and settings, once all that was typed has been checked that needs no world.
+    @property
+    def profile(self) -> str:
+        """Name of the vehicle's profile."""
+        is_rover = self.as_ == "mavlink" and self.flavour in FLAVOURS and not FLAVOURS[self.flavour].flies
+        return self.vehicle or ("go1" if is_rover else "drone")
+
+    def checked(self) -> tuple[BoxDeg | None, float | None, AirSimSettings | None, tuple[str, int] | None]:
+        """Return bounding box, speed, settings and ground station, once all has been checked that needs no world.
 
         Raises:
             InputError: With everything that is wrong.
@@ -63,13 +75,16 @@ class ServeOptions:
         bbox = found.take(lambda: parse_bbox(self.bbox), None)
         found.check(lambda: check_world_name(self.world, seed=max(self.seed, 0), bbox=bbox))
         found.check(lambda: check_start_form(self.start))
-        found.check(lambda: vehicle_profile(self.vehicle))
+        found.check(lambda: vehicle_profile(self.profile))
         found.check(lambda: sensor_noise(self.noise))
         speed = found.take(lambda: _speed(self.speed), None)
         path = self.settings
         settings = None if path is None else found.take(lambda: AirSimSettings.read(path), None)
+        if self.flavour not in FLAVOURS:
+            found.add(UnknownNameError("autopilot", self.flavour, list(FLAVOURS)))
+        station = found.take(lambda: _station(self.station), None)
         found.finish("rex serve")
-        return bbox, speed, settings
+        return bbox, speed, settings, station
 
 
 def serve_from_options(options: ServeOptions) -> None:
@@ -79,7 +94,7 @@ def serve_from_options(options: ServeOptions) -> None:
         InputError: If an option is wrong, nothing can stand at the start, or the address cannot be listened on.
         KeyboardInterrupt: When a person stops it.
     """
-    bbox, speed, settings = options.checked()
+    bbox, speed, settings, station = options.checked()
     console = Output()
 
     def say(line: str) -> None:
@@ -89,13 +104,26 @@ def serve_from_options(options: ServeOptions) -> None:
     for note in notes:
         complain(f"note: {note}; choose a part with --bbox")
     stop_if_asked()
-    atlas, profile = Atlas(world), vehicle_profile(options.vehicle)
+    atlas, profile = Atlas(world), vehicle_profile(options.profile)
     start = parse_start(options.start, world)
     if start is None:
         start = free_spot(atlas, profile)
 
-    async def serve() -> None:
-        server = AirSimServer(
+    def server() -> Served:
+        if options.as_ == "mavlink":
+            from reasoned_explorer.serving.mavlink.server import MavlinkServer
+
+            return MavlinkServer(
+                atlas,
+                start,
+                flavour=options.flavour,
+                profile=profile,
+                station=station,
+                speed=1.0 if speed is None else speed,
+                noise=options.noise,
+                seed=options.seed,
+            )
+        made = AirSimServer(
             atlas,
             start,
             profile=profile,
@@ -106,13 +134,19 @@ def serve_from_options(options: ServeOptions) -> None:
             generation=options.generation,
             conditions=options.conditions,
         )
+        made.warm_up()
+        return made
+
+    async def serve() -> None:
         say("getting ready, which takes a minute or two the first time …")
-        server.warm_up()
+        served = server()
         stop_if_asked()
         loop, over = asyncio.get_running_loop(), asyncio.Event()
         try:
-            port = await _listening(server, options)
-            say(f"{world.name} answers as AirSim at {_shown(options.host)}:{port}; Ctrl-C ends it")
+            port = await _listening(served, options, settings)
+            name = "AirSim" if options.as_ == "airsim" else f"an autopilot ({options.flavour}, UDP)"
+            say(f"{world.name} answers as {name} at {_shown(options.host)}:{port}; Ctrl-C ends it")
+            say(f"{profile.name} stands at {_in_words(start, world)}")
             if not _is_loopback(options.host):
                 complain("note: whoever reaches that address moves the vehicle")
             if world.attribution:
@@ -120,20 +154,41 @@ def serve_from_options(options: ServeOptions) -> None:
             with on_stop(lambda: loop.call_soon_threadsafe(over.set)):
                 await over.wait()
         finally:
-            await server.close()
+            await served.close()
 
     asyncio.run(serve())
     stop_if_asked()
 
 
-async def _listening(server: AirSimServer, options: ServeOptions) -> int:
+async def _listening(served: Served, options: ServeOptions, settings: AirSimSettings | None) -> int:
+    port = options.port
+    if port is None:
+        port = _PORTS[options.as_] if settings is None else settings.ApiServerPort
     try:
-        return await server.start(options.host, options.port)
+        return await served.start(options.host, port)
     except OSError as error:
-        port = server.settings.ApiServerPort if options.port is None else options.port
         what = f"{_shown(options.host)}:{port} cannot be listened on ({error.strerror or error})"
         fault = Fault(what, "a free port of this machine", "give another --port, or --port 0 for any that is free")
         raise SettingsError("rex serve", [fault]) from error
+
+
+def _in_words(start: Pose, world: World) -> str:
+    """Return a start as ``--start`` takes it."""
+    heading_deg = math.degrees(start.heading_rad)
+    if world.origin is None:
+        return f"--start {start.x_m:g},{start.y_m:g},{heading_deg:g}"
+    lat_deg, lon_deg = world.origin.geodetic_from_enu_deg(start.x_m, start.y_m)
+    return f"--start {lat_deg:.7f},{lon_deg:.7f},{heading_deg:g}"
+
+
+def _station(text: str | None) -> tuple[str, int] | None:
+    """Return where a ground station listens."""
+    if text is None:
+        return None
+    host, _, port = text.rpartition(":")
+    if not host or not port.isdecimal() or not 0 < int(port) < 65536:
+        raise SettingsError("--station", [Fault(f"{text!r:.60}", "HOST:PORT")])
+    return host.strip("[]"), int(port)
 
 
 def free_spot(atlas: Atlas, profile: VehicleProfile) -> Pose:

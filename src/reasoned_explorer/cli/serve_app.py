@@ -16,7 +16,7 @@ def add_serve(app: typer.Typer) -> None:
 @answering
 def serve(
     *,
-    as_: Annotated[str, typer.Option("--as", help="Whose wire: airsim.")],
+    as_: Annotated[str, typer.Option("--as", help="Whose wire: airsim or mavlink.")],
     world: Annotated[
         str,
         typer.Option(
@@ -34,12 +34,16 @@ def serve(
         ),
     ] = None,
     seed: Annotated[int, typer.Option(help="Everything that is drawn is keyed by it.")] = 0,
-    vehicle: Annotated[str, typer.Option(help="A vehicle profile; see rex names.")] = "drone",
+    vehicle: Annotated[
+        str | None,
+        typer.Option(help="A vehicle profile; see rex names.", show_default="drone; go1 as a rover's autopilot"),
+    ] = None,
     host: Annotated[
         str, typer.Option(help="Listen on this address. Whoever reaches it moves the vehicle.")
     ] = "127.0.0.1",
     port: Annotated[
-        int | None, typer.Option(help="Listen on this port; 0 for any that is free.", show_default="41451")
+        int | None,
+        typer.Option(help="Listen on this port; 0 for any that is free.", show_default="41451; 14550 as mavlink"),
     ] = None,
     speed: Annotated[
         str | None,
@@ -49,6 +53,12 @@ def serve(
         str, typer.Option(help="Of the sensors that it steers by: none, rtk-fixed, rtk-float, single.")
     ] = "rtk-fixed",
     settings: Annotated[Path | None, typer.Option(help="A settings.json as AirSim reads it.")] = None,
+    flavour: Annotated[
+        str, typer.Option(help="As mavlink, whose autopilot: arducopter, ardurover, px4, px4-rover.")
+    ] = "arducopter",
+    station: Annotated[
+        str | None, typer.Option(help="As mavlink, HOST:PORT of a ground station (UDP) that is shown the vehicle.")
+    ] = None,
     generation: Annotated[
         int, typer.Option(help="The version that it says it is: 1 (AirSim, Colosseum) or 4 (Cosys-AirSim).")
     ] = 1,
@@ -73,6 +83,8 @@ def serve(
             speed=speed,
             noise=noise,
             settings=settings,
+            flavour=flavour,
+            station=station,
             generation=generation,
             conditions=conditions,
         )

@@ -34,6 +34,7 @@ class VehicleOptions:
     max_speed_mps: float | None = None
     dry_run: bool = False
     confirm: bool = False
+    move: bool = False
 
     @property
     def address(self) -> VehicleAddress | None:
@@ -44,20 +45,29 @@ class VehicleOptions:
         """
         return vehicle_address(self.vehicle)
 
-    def check(self, found: Gathering) -> None:
-        """Keep what is wrong with it."""
+    def check(self, found: Gathering, *, asks_to_move: bool = True) -> None:
+        """Keep what is wrong with it.
+
+        Args:
+            found: Where it is kept.
+            asks_to_move: Whether the vehicle is to go anywhere.
+        """
         address = found.take(lambda: self.address, None)
         given = {
             "--fence": self.fence_m is not None,
             "--max-speed": self.max_speed_mps is not None,
             "--dry-run": self.dry_run,
             "--confirm": self.confirm,
+            "--move": self.move,
         }
         if address is not None:
             found.check(lambda: Guarding(address, self._limits(), fence_m=self.fence_m))
             if self.confirm and not _is_terminal():
                 found.add(SettingsError("--confirm", [Fault("nobody can be asked", "a terminal", "or leave it out")]))
-        elif "://" not in self.vehicle and any(given.values()):
+            if address.may_be_real and asks_to_move and not (self.move or self.dry_run):
+                fault = Fault(f"a real machine may be at {address}", "--move, if it may move; or --dry-run")
+                found.add(SettingsError("--vehicle", [fault]))
+        elif ":" not in self.vehicle and any(given.values()):
             named = ", ".join(name for name, is_given in given.items() if is_given)
             fault = Fault(f"{named} with {self.vehicle!r:.60}", "a vehicle at an address, such as airsim://HOST:41451")
             found.add(SettingsError("--vehicle", [fault]))
@@ -99,6 +109,7 @@ class VehicleOptions:
             dry_run=self.dry_run,
             confirm=confirm if self.confirm else None,
             stop=stop,
+            may_move=self.move,
         )
         if not _is_terminal():
             yield orders
@@ -120,7 +131,7 @@ def check_vehicle(options: VehicleOptions) -> None:
         typer.Exit: If an item is not as it should be.
     """
     found = Gathering()
-    options.check(found)
+    options.check(found, asks_to_move=False)
     found.finish("vehicle")
     address = options.address
     if address is None:

@@ -24,7 +24,7 @@ def _vehicles() -> None:
 @vehicles_app.command()
 @answering
 def check(
-    vehicle: Annotated[str, typer.Argument(help="Where it is reached: airsim://HOST:41451.")],
+    vehicle: Annotated[str, typer.Argument(help="Where it is: airsim://HOST:41451, mavlink:udpin:0.0.0.0:14550 …")],
     *,
     fence: Fence = None,
     max_speed: MaxSpeed = None,

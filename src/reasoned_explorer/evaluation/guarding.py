@@ -35,6 +35,7 @@ class Guarding:
         dry_run: Look, plan and report, but never move.
         confirm: Asks a person before each leg.
         stop: The operator's.
+        may_move: Whether a machine that may be real may be made to move.
 
     Raises:
         SettingsError: If the fence is out of range.
@@ -46,6 +47,7 @@ class Guarding:
     dry_run: bool = False
     confirm: Confirm | None = None
     stop: OperatorStop | None = None
+    may_move: bool = False
 
     def __post_init__(self) -> None:
         if self.fence_m is not None and not is_within(self.fence_m, 2.0, 1e5):
@@ -69,6 +71,7 @@ class Guarding:
                 start=start,
                 pictures=is_called or mission.keeps_pictures,
                 content=None if is_called else eyes.look,
+                may_move=self.may_move,
             )
 
         return guarded(

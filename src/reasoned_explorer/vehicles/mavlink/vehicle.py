@@ -22,6 +22,7 @@ from reasoned_explorer.vehicles.mavlink.speed import Speed
 from reasoned_explorer.vehicles.mavlink.telemetry import Battery, PositionQuality
 from reasoned_explorer.vehicles.mavlink.views import Content, PictureSource
 from reasoned_explorer.vehicles.profile import VehicleProfile
+from reasoned_explorer.vehicles.safety.telemetry import Telemetry
 from reasoned_explorer.vehicles.vehicle import Vehicle
 
 _TAKEOFF = 22
@@ -70,7 +71,7 @@ class MavlinkVehicle(Vehicle):
         self._pace: Pace = pace_of(clock, self.autopilot, self._frame)
         self._moment = Moment(0.0, start, start, 0.0)
         self._legs = self._looks = 0
-        self._is_connected = self._is_up = False
+        self._is_connected = self._is_up = self._is_paced = False
         self._speed = Speed(self.autopilot)
         #: The last leg; after a cancelled or failed `go_to` the part of it that was travelled.
         self.last_leg: Leg | None = None
@@ -86,6 +87,10 @@ class MavlinkVehicle(Vehicle):
     def battery(self) -> Battery:
         """What is left of its battery, as last told."""
         return self.autopilot.telemetry.battery
+
+    def telemetry(self) -> Telemetry:
+        """Return what a guard is told; a lost link and a poor position are seen to by driver and autopilot."""
+        return Telemetry(self.pose, t_s=self._moment.t_s, battery=self.battery.remaining)
 
     @property
     def position_quality(self) -> PositionQuality:
@@ -139,13 +144,17 @@ class MavlinkVehicle(Vehicle):
         if self.autopilot.flavour.flies != self.profile.flies:
             is_what = "flies" if self.autopilot.flavour.flies else "drives"
             raise PartError(PART, f"the autopilot's machine {is_what}, and {self.profile.name} does not")
-        await self._pace.begin()
+        await self._begin_pace()
         self._moment = await self._pace.moment()
         self._is_up = True
         await self._pace.talk(self.autopilot.take_control)
         await self._pace.talk(lambda: self._speed.take(self.profile.speed_mps))
         if self.profile.flies:
             await self._rise()
+
+    async def _begin_pace(self) -> None:
+        await self._pace.begin()
+        self._is_paced = True
 
     async def close(self) -> None:
         """Stand, land if that is wanted, switch the motors off, hang up. Safe to call twice.
@@ -164,6 +173,8 @@ class MavlinkVehicle(Vehicle):
                 await self._leave_safe()
             if was_up:
                 await self._pace.talk(self._speed.give_back)
+            if self._is_paced:
+                self._is_paced = False
                 await self._pace.end()
         finally:
             await self._pace.talk(self.autopilot.close)
@@ -206,6 +217,8 @@ class MavlinkVehicle(Vehicle):
     async def look(self, headings_rad: Sequence[float]) -> Sequence[View]:
         """Take one view in each heading, in that order; keys are (legs so far, looks since the last leg, index).
 
+        Only connected, it does not move: one that turns to look sees what is ahead.
+
         Raises:
             SettingsError: If a heading is not finite.
             PartError: If the link or the camera fails, or the autopilot does not listen any more.
@@ -213,15 +226,19 @@ class MavlinkVehicle(Vehicle):
         faults = [Fault(f"heading {heading}", "finite radians") for heading in headings_rad if not is_finite(heading)]
         if faults:
             raise SettingsError("look", faults)
-        self._check()
+        if self._is_up or not self._is_connected:
+            self._check()
+        if not self._is_paced:
+            await self._begin_pace()
         await self._pace.catch_up(looks=True)
         self._moment = await self._pace.moment()
         looks, self._looks = self._looks, self._looks + 1
         taken: dict[int, View] = {}
         for index in self._order(headings_rad):
             heading_rad = normalise_heading_rad(headings_rad[index])
-            if self.profile.turns_to_look:
+            if self.profile.turns_to_look and self._is_up:
                 await self._turn_to(heading_rad)
+            if self.profile.turns_to_look:
                 heading_rad = self.pose.heading_rad
             taken[index] = await self._view((self._legs, looks, index), heading_rad)
         if self.profile.look_s > 0.0:
