@@ -15,7 +15,7 @@ from reasoned_explorer.vehicles.vehicle import Vehicle
 
 if TYPE_CHECKING:
     from reasoned_explorer.vehicles.airsim.place import ServedPlace
-    from reasoned_explorer.vehicles.airsim.vehicle import Content
+    from reasoned_explorer.vehicles.looking import Content
 
 _AIRSIM_PORT = 41451
 _FORM = "airsim://HOST:PORT or mavlink:CONNECTION, as in mavlink:udpin:0.0.0.0:14550; PROFILE@ may stand before it"

@@ -29,6 +29,7 @@ from reasoned_explorer.simulation.motion import NO_DISCS, NO_WALLS, Body, End, G
 from reasoned_explorer.simulation.sensors import SensorNoise, sensor_noise
 from reasoned_explorer.simulation.sighting import ViewContent
 from reasoned_explorer.simulation.under_way import FAILSAFE_S, State, UnderWay, told
+from reasoned_explorer.vehicles.looking import turning_order
 from reasoned_explorer.vehicles.profile import VehicleProfile
 from reasoned_explorer.vehicles.safety.telemetry import Telemetry
 from reasoned_explorer.vehicles.vehicle import Vehicle
@@ -44,8 +45,6 @@ if TYPE_CHECKING:
 _WALKER_Z_M = 0.3
 #: Obstacles are gathered this far around a leg, metres, and further where the receiver errs by metres.
 _MARGIN_M = 5.0
-#: The last heading must be so much nearer than the first for a look around to begin there, radians.
-_CLEARLY_NEARER_RAD = 0.2
 #: Undersides higher than this can be gone under, metres (as in `world.raster`).
 _ROOF_CLEARANCE_M = 2.0
 
@@ -324,13 +323,9 @@ class SimulatedVehicle(Vehicle):
         self._idle_since_s = now_s
 
     def _turning_order(self, headings_rad: Sequence[float]) -> list[int]:
-        order = list(range(len(headings_rad)))
-        if not (self.profile.turns_to_look and order):
-            return order
-        facing_rad = self._body.pose.heading_rad
-        to_first = abs(bearing_between_rad(facing_rad, headings_rad[0]))
-        to_last = abs(bearing_between_rad(facing_rad, headings_rad[-1]))
-        return order[::-1] if to_last < to_first - _CLEARLY_NEARER_RAD else order
+        if not self.profile.turns_to_look:
+            return list(range(len(headings_rad)))
+        return turning_order(self._body.pose.heading_rad, dict(enumerate(headings_rad)))
 
     def _at_height(self, pose: Pose) -> Pose:
         return Pose(pose.x_m, pose.y_m, self.profile.camera_height_m, pose.heading_rad)

@@ -2,7 +2,7 @@
 
 import asyncio
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from reasoned_explorer.clock import Clock
 from reasoned_explorer.geometry import Pose, bearing_between_rad, normalise_heading_rad
 from reasoned_explorer.geometry.frames import is_finite
-from reasoned_explorer.model import Camera, Fault, Leg, LegOutcome, PartError, SettingsError, View
+from reasoned_explorer.model import Fault, Leg, LegOutcome, PartError, SettingsError, View
 from reasoned_explorer.vehicles.airsim.api import AirSimApi, Moment
 from reasoned_explorer.vehicles.airsim.conventions import HomeFrame
 from reasoned_explorer.vehicles.airsim.pace import Pace, pace_of
@@ -19,12 +19,11 @@ from reasoned_explorer.vehicles.airsim.rpc import Pending, RpcClient
 from reasoned_explorer.vehicles.airsim.senses import Senses
 from reasoned_explorer.vehicles.airsim.settings import DriverSettings
 from reasoned_explorer.vehicles.control.legs import LegWatch
+from reasoned_explorer.vehicles.looking import Content, turning_order
 from reasoned_explorer.vehicles.profile import VehicleProfile
 from reasoned_explorer.vehicles.safety.telemetry import Telemetry
 from reasoned_explorer.vehicles.vehicle import Vehicle
 
-#: Says what a simulator knows to be in a view that a camera really takes at a pose; for simulated captioners only.
-Content = Callable[[Pose, Camera], object]
 #: How long taking off and climbing may take on the server's time, seconds.
 _START_LIMIT_S = 60.0
 _CLIMB_MPS = 1.0
@@ -177,7 +176,7 @@ class AirSimVehicle(Vehicle):
             for index, shot in zip(fitting, shots, strict=True):
                 seen[index] = fitting[index], shot
         first = self.settings.cameras[0]
-        for index in self._turning_order({k: v for k, v in wanted.items() if k not in fitting}):
+        for index in turning_order(self.pose.heading_rad, {k: v for k, v in wanted.items() if k not in fitting}):
             if turns:
                 await self._turn_to(wanted[index])
             seen[index] = first, await self._aimed(first, wanted[index])
@@ -315,17 +314,6 @@ class AirSimVehicle(Vehicle):
         off = {name: abs(bearing_between_rad(wanted_rad, at_rad)) for name, (at_rad, _) in self._cameras.items()}
         nearest = min(off, key=off.__getitem__)
         return nearest if off[nearest] <= self.settings.fits_rad else None
-
-    def _turning_order(self, wanted: dict[int, float]) -> list[int]:
-        """Return the headings that are left in the order in which to turn: from the end that is nearer."""
-        order = list(wanted)
-        if len(order) > 1:
-            facing_rad = self.pose.heading_rad
-            to_first = abs(bearing_between_rad(facing_rad, wanted[order[0]]))
-            to_last = abs(bearing_between_rad(facing_rad, wanted[order[-1]]))
-            if to_last < to_first - 0.2:
-                order.reverse()
-        return order
 
     async def _turn_to(self, heading_rad: float) -> None:
         bearing_rad, _ = self._cameras[self.settings.cameras[0]]

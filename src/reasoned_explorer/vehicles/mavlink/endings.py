@@ -1,8 +1,5 @@
 """How the driver judges what it sees: whether a leg has ended, and at which end to begin a look around."""
 
-from collections.abc import Sequence
-
-from reasoned_explorer.geometry import bearing_between_rad
 from reasoned_explorer.model import LegOutcome
 from reasoned_explorer.vehicles.control.legs import LegWatch
 from reasoned_explorer.vehicles.mavlink.pace import Moment
@@ -12,8 +9,6 @@ from reasoned_explorer.vehicles.mavlink.telemetry import Telemetry
 _CRASHES = ("Crash", "Collision")
 #: Slower than this a machine that turns only afterwards stands, metres a second.
 _STANDING_MPS = 0.05
-#: The last heading must be so much nearer than the first for a look around to begin there, radians.
-_CLEARLY_NEARER_RAD = 0.2
 
 
 def crash_told(told: Telemetry, since: int) -> str:
@@ -47,14 +42,3 @@ def ending(watch: LegWatch, moment: Moment, *, limit_s: float, turns_later: bool
     if watch.elapsed_s > limit_s:
         return LegOutcome.STUCK, "not there in three times the time that it should take"
     return None
-
-
-def turning_order(facing_rad: float, headings_rad: Sequence[float]) -> list[int]:
-    """Return in which order to turn to headings: from the end that is nearer."""
-    order = list(range(len(headings_rad)))
-    if order:
-        to_first = abs(bearing_between_rad(facing_rad, headings_rad[0]))
-        to_last = abs(bearing_between_rad(facing_rad, headings_rad[-1]))
-        if to_last < to_first - _CLEARLY_NEARER_RAD:
-            order.reverse()
-    return order

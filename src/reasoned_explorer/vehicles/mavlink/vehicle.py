@@ -12,15 +12,16 @@ from reasoned_explorer.geometry.frames import is_finite
 from reasoned_explorer.model import Fault, Leg, LegOutcome, PartError, SettingsError, View
 from reasoned_explorer.vehicles.airsim.conventions import HomeFrame
 from reasoned_explorer.vehicles.control.legs import LegWatch
+from reasoned_explorer.vehicles.looking import Content, turning_order
 from reasoned_explorer.vehicles.mavlink.address import Address
 from reasoned_explorer.vehicles.mavlink.autopilot import PART, Autopilot
-from reasoned_explorer.vehicles.mavlink.endings import crash_told, ending, turning_order
+from reasoned_explorer.vehicles.mavlink.endings import crash_told, ending
 from reasoned_explorer.vehicles.mavlink.pace import Moment, Pace, pace_of
 from reasoned_explorer.vehicles.mavlink.setpoints import Setpoint
 from reasoned_explorer.vehicles.mavlink.settings import DriverSettings
 from reasoned_explorer.vehicles.mavlink.speed import Speed
 from reasoned_explorer.vehicles.mavlink.telemetry import Battery, PositionQuality
-from reasoned_explorer.vehicles.mavlink.views import Content, PictureSource
+from reasoned_explorer.vehicles.mavlink.views import PictureSource
 from reasoned_explorer.vehicles.profile import VehicleProfile
 from reasoned_explorer.vehicles.safety.telemetry import Telemetry
 from reasoned_explorer.vehicles.vehicle import Vehicle
@@ -259,7 +260,7 @@ class MavlinkVehicle(Vehicle):
 
     def _order(self, headings_rad: Sequence[float]) -> list[int]:
         if self.profile.turns_to_look:
-            return turning_order(self.pose.heading_rad, headings_rad)
+            return turning_order(self.pose.heading_rad, dict(enumerate(headings_rad)))
         return list(range(len(headings_rad)))
 
     # Moving.

@@ -1,16 +1,9 @@
 """What looks for a machine behind MAVLink: its pictures do not come over that wire."""
 
-from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-
-from reasoned_explorer.geometry import Pose
-from reasoned_explorer.model import Camera
-
-#: Says what a simulator knows to be in a view that a camera takes at a pose; for simulated captioners only.
-Content = Callable[[Pose, Camera], object]
 
 
 class PictureSource(Protocol):

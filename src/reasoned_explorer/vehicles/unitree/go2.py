@@ -12,12 +12,13 @@ from typing import Any
 from reasoned_explorer.clock import Clock
 from reasoned_explorer.geometry import Pose, bearing_between_rad, normalise_heading_rad
 from reasoned_explorer.model import Fault, MissingDependencyError, PartError, SettingsError
+from reasoned_explorer.vehicles.looking import Content
 from reasoned_explorer.vehicles.profile import VehicleProfile
 from reasoned_explorer.vehicles.unitree.go1_robot import velocity_within
 from reasoned_explorer.vehicles.unitree.limits import CommandLimits
 from reasoned_explorer.vehicles.unitree.robot import BodyReading, Robot, Velocity
 from reasoned_explorer.vehicles.unitree.settings import WalkSettings
-from reasoned_explorer.vehicles.unitree.vehicle import Content, Photographer, UnitreeVehicle
+from reasoned_explorer.vehicles.unitree.vehicle import Photographer, UnitreeVehicle
 from reasoned_explorer.vehicles.unitree.whereabouts import PositionSource
 
 #: The middleware that the robot itself runs; another version beside it has been seen to crash its programs.

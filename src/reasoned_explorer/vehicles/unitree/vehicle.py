@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from reasoned_explorer.clock import Clock
 from reasoned_explorer.clock.live_thread import Stopwatch, begin_live
-from reasoned_explorer.geometry import Pose, bearing_between_rad, normalise_heading_rad
+from reasoned_explorer.geometry import Pose, normalise_heading_rad
 from reasoned_explorer.geometry.frames import is_finite
-from reasoned_explorer.model import Camera, Fault, Leg, LegOutcome, PartError, SettingsError, View
+from reasoned_explorer.model import Fault, Leg, LegOutcome, PartError, SettingsError, View
+from reasoned_explorer.vehicles.looking import Content, turning_order
 from reasoned_explorer.vehicles.profile import VehicleProfile
 from reasoned_explorer.vehicles.unitree.go1_robot import Go1Robot
 from reasoned_explorer.vehicles.unitree.legs import LegLog
@@ -25,10 +26,6 @@ from reasoned_explorer.vehicles.unitree.whereabouts import PositionSource, Recko
 from reasoned_explorer.vehicles.vehicle import Vehicle
 
 T = TypeVar("T")
-#: Says what a simulator knows to be in a view that a camera takes at a pose; for simulated captioners only.
-Content = Callable[[Pose, Camera], object]
-#: The last heading must be so much nearer than the first for a look around to begin there, radians.
-_CLEARLY_NEARER_RAD = 0.2
 
 
 class Photographer(Protocol):
@@ -167,7 +164,7 @@ class UnitreeVehicle(Vehicle):
         await self._begin()
         taken: dict[int, View] = {}
         try:
-            for index in self._turning_order(headings_rad):
+            for index in turning_order(self.pose.heading_rad, dict(enumerate(headings_rad))):
                 await self._turn(normalise_heading_rad(headings_rad[index]))
                 image = await self._picture()
                 pose = self.pose
@@ -247,15 +244,6 @@ class UnitreeVehicle(Vehicle):
         if camera is None:
             return None
         return await self._talk(lambda: asyncio.to_thread(camera))
-
-    def _turning_order(self, headings_rad: Sequence[float]) -> list[int]:
-        order = list(range(len(headings_rad)))
-        if not order:
-            return order
-        facing_rad = self.pose.heading_rad
-        to_first = abs(bearing_between_rad(facing_rad, headings_rad[0]))
-        to_last = abs(bearing_between_rad(facing_rad, headings_rad[-1]))
-        return order[::-1] if to_last < to_first - _CLEARLY_NEARER_RAD else order
 
     # Time. A real robot is driven in the process's live loop, so that it is steered steadily whatever the mission
     # computes; a stepped one stands still while nobody talks to it.

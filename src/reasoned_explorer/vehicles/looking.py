@@ -1,0 +1,28 @@
+"""What vehicles share where they look: in which order they turn, and what a simulator knows of a view."""
+
+from collections.abc import Callable, Mapping
+from typing import TypeVar
+
+from reasoned_explorer.geometry import Pose, bearing_between_rad
+from reasoned_explorer.model import Camera
+
+#: Says what a simulator knows to be in a view that a camera takes at a pose; for simulated captioners only.
+Content = Callable[[Pose, Camera], object]
+#: The last heading must be so much nearer than the first for a look around to begin there, radians.
+_CLEARLY_NEARER_RAD = 0.2
+
+K = TypeVar("K")
+
+
+def turning_order(facing_rad: float, headings_rad: Mapping[K, float]) -> list[K]:
+    """Return in which order to turn to headings: from the end of the list that is nearer.
+
+    Args:
+        facing_rad: Where the vehicle faces, a compass heading in radians.
+        headings_rad: Where it is to look, in the order of the sweep; likewise.
+    """
+    order = list(headings_rad)
+    if not order:
+        return order
+    to_first, to_last = (abs(bearing_between_rad(facing_rad, headings_rad[end])) for end in (order[0], order[-1]))
+    return order[::-1] if to_last < to_first - _CLEARLY_NEARER_RAD else order
