@@ -84,6 +84,9 @@ def test_so_it_is_by_mavlink_once_a_person_says_that_it_may_move() -> None:
         code, shown = _rex("run", *mission, "--vehicle", address, "--out", "refused")
         assert code == 2, shown
         assert "a real machine may be at" in shown
+        code, shown = _rex("run", *mission, "--vehicle", address, "--move", "--images", "--out", "refused")
+        assert code == 2, shown
+        assert "no pictures come from" in shown
         code, shown = _rex("vehicle", "check", address, "--fence", "50")
         assert code == 3, shown
         assert re.search(r"ok +battery", shown)

@@ -14,7 +14,7 @@ from reasoned_explorer.cli.answers import ExitCode
 from reasoned_explorer.cli.console import Output
 from reasoned_explorer.clock import RealClock
 from reasoned_explorer.evaluation.guarding import Guarding
-from reasoned_explorer.evaluation.vehicle_address import VehicleAddress, vehicle_address
+from reasoned_explorer.evaluation.vehicle_address import Errand, VehicleAddress, vehicle_address
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Fault, Gathering, PartError, SettingsError
 from reasoned_explorer.vehicles.registry import vehicle_profile
@@ -159,7 +159,7 @@ async def _items(options: VehicleOptions, address: VehicleAddress) -> tuple[Chec
             raise AssertionError
         limits = orders.limits_at(start)
         profile = limited_profile(vehicle_profile(address.profile), limits)
-        vehicle = address.vehicle(profile, clock=RealClock(), start=start)
+        vehicle = address.vehicle(profile, Errand(RealClock(), start))
         try:
             with suppress(PartError):  # the list says what is wrong
                 await vehicle.connect()

@@ -5,20 +5,18 @@ from typing import TYPE_CHECKING
 
 from reasoned_explorer.calls.chat import is_model_name
 from reasoned_explorer.calls.ledger import Ledger
-from reasoned_explorer.evaluation.vehicle_address import VehicleAddress
+from reasoned_explorer.evaluation.vehicle_address import Errand, VehicleAddress
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Fault, SettingsError
 from reasoned_explorer.model.checks import is_within
 from reasoned_explorer.model.record import CallRecord
 from reasoned_explorer.simulation.eyes import Eyes
 from reasoned_explorer.simulation.pixel_eyes import PixelEyes
-from reasoned_explorer.vehicles.profile import VehicleProfile
 from reasoned_explorer.vehicles.safety.area import Circle
 from reasoned_explorer.vehicles.safety.building import guarded
 from reasoned_explorer.vehicles.safety.guard import Confirm, GuardedVehicle
 from reasoned_explorer.vehicles.safety.limits import SafetyLimits
 from reasoned_explorer.vehicles.safety.operator_stop import OperatorStop
-from reasoned_explorer.vehicles.vehicle import Vehicle
 
 if TYPE_CHECKING:
     from reasoned_explorer.evaluation.mission import Mission
@@ -57,27 +55,21 @@ class Guarding:
         """Return the vehicle of a mission, which connects when it is started.
 
         Raises:
-            SettingsError: If the vehicle cannot keep to the limits.
+            SettingsError: If the vehicle cannot keep to the limits, or pictures are wanted that it does not take.
             MissingDependencyError: If the library of its wire is not installed.
         """
-        settings, start = mission.settings, mission.start
-        is_called = is_model_name(settings.captioner)
-        eyes = PixelEyes(mission.atlas) if settings.eyes == "pixels" else Eyes(mission.atlas)
-
-        def make(profile: VehicleProfile) -> Vehicle:
-            return self.address.vehicle(
-                profile,
-                clock=mission.clock,
-                start=start,
-                pictures=is_called or mission.keeps_pictures,
-                content=None if is_called else eyes.look,
-                may_move=self.may_move,
-            )
-
+        settings, content = mission.settings, None
+        shows = is_model_name(settings.captioner) or mission.keeps_pictures
+        if shows and not self.address.has_camera:
+            fault = Fault(f"no pictures come from {self.address}", "a simulated captioner", "and no --images")
+            raise SettingsError("vehicle", [fault])
+        if not is_model_name(settings.captioner):
+            content = (PixelEyes if settings.eyes == "pixels" else Eyes)(mission.atlas).look
+        errand = Errand(mission.clock, mission.start, shows, content, self.may_move)
         return guarded(
-            make,
+            lambda profile: self.address.vehicle(profile, errand),
             mission.profile,
-            self.limits_at(start),
+            self.limits_at(mission.start),
             clock=mission.clock,
             stop=self.stop,
             confirm=self.confirm,

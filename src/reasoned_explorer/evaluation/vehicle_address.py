@@ -8,6 +8,7 @@ from urllib.parse import urlsplit
 from reasoned_explorer.clock import Clock
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Fault, SettingsError
+from reasoned_explorer.vehicles.looking import Content
 from reasoned_explorer.vehicles.mavlink.address import Address
 from reasoned_explorer.vehicles.profile import VehicleProfile
 from reasoned_explorer.vehicles.registry import vehicle_profile
@@ -15,11 +16,29 @@ from reasoned_explorer.vehicles.vehicle import Vehicle
 
 if TYPE_CHECKING:
     from reasoned_explorer.vehicles.airsim.place import ServedPlace
-    from reasoned_explorer.vehicles.looking import Content
 
 _AIRSIM_PORT = 41451
 _FORM = "airsim://HOST:PORT or mavlink:CONNECTION, as in mavlink:udpin:0.0.0.0:14550; PROFILE@ may stand before it"
 _ADDRESS = re.compile(r"^(?:(?P<profile>[^@:/]+)@)?(?P<scheme>[a-z0-9]+):(?P<rest>.*)$", re.IGNORECASE | re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True)
+class Errand:
+    """What a vehicle is wanted for.
+
+    Attributes:
+        clock: The mission's.
+        start: Where it stands, in the world's frame.
+        pictures: Whether pictures are taken.
+        content: Says what its cameras show, for simulated captioners of a world that both ends know.
+        may_move: Whether a machine that may be real may be made to move.
+    """
+
+    clock: Clock
+    start: Pose
+    pictures: bool = True
+    content: Content | None = None
+    may_move: bool = False
 
 
 class VehicleAddress(Protocol):
@@ -33,25 +52,16 @@ class VehicleAddress(Protocol):
     def may_be_real(self) -> bool:
         """Whether a real machine may be there, which moves only when that is asked for."""
 
-    def vehicle(
-        self,
-        profile: VehicleProfile,
-        *,
-        clock: Clock,
-        start: Pose,
-        pictures: bool = True,
-        content: "Content | None" = None,
-        may_move: bool = False,
-    ) -> Vehicle:
+    @property
+    def has_camera(self) -> bool:
+        """Whether pictures come from there."""
+
+    def vehicle(self, profile: VehicleProfile, errand: Errand) -> Vehicle:
         """Return the driver of the vehicle, which connects when it is started.
 
         Args:
             profile: How fast and how high it is told to move.
-            clock: The mission's.
-            start: Where it stands, in the world's frame.
-            pictures: Whether pictures are taken.
-            content: Says what its cameras show, for simulated captioners of a world that both ends know.
-            may_move: Whether a machine that may be real may be made to move.
+            errand: What it is wanted for.
 
         Raises:
             MissingDependencyError: If the library of its wire is not installed.
@@ -89,29 +99,24 @@ class AirSimAddress:
         """It is a simulator."""
         return False
 
-    def vehicle(
-        self,
-        profile: VehicleProfile,
-        *,
-        clock: Clock,
-        start: Pose,
-        pictures: bool = True,
-        content: "Content | None" = None,
-        may_move: bool = False,
-    ) -> Vehicle:
+    @property
+    def has_camera(self) -> bool:
+        """They come over the wire."""
+        return True
+
+    def vehicle(self, profile: VehicleProfile, errand: Errand) -> Vehicle:
         """Return the driver."""
         from reasoned_explorer.vehicles.airsim.settings import DriverSettings
         from reasoned_explorer.vehicles.airsim.vehicle import AirSimVehicle
 
-        del may_move
         return AirSimVehicle(
             profile,
-            clock=clock,
+            clock=errand.clock,
             host=self.host,
             port=self.port,
-            home=replace(start, z_m=0.0),
-            settings=DriverSettings(aims=True, pictures=pictures, settle_s=0.0),
-            content=content,
+            home=replace(errand.start, z_m=0.0),
+            settings=DriverSettings(aims=True, pictures=errand.pictures, settle_s=0.0),
+            content=errand.content,
         )
 
     async def place(self) -> "ServedPlace | None":
@@ -141,28 +146,23 @@ class MavlinkAddress:
         """Nobody can tell by an address."""
         return True
 
-    def vehicle(
-        self,
-        profile: VehicleProfile,
-        *,
-        clock: Clock,
-        start: Pose,
-        pictures: bool = True,
-        content: "Content | None" = None,
-        may_move: bool = False,
-    ) -> Vehicle:
-        """Return the driver; it has no camera, so that there are no pictures."""
+    @property
+    def has_camera(self) -> bool:
+        """They do not come over this wire."""
+        return False
+
+    def vehicle(self, profile: VehicleProfile, errand: Errand) -> Vehicle:
+        """Return the driver."""
         from reasoned_explorer.vehicles.mavlink.settings import DriverSettings
         from reasoned_explorer.vehicles.mavlink.vehicle import MavlinkVehicle
 
-        del pictures
         return MavlinkVehicle(
             profile,
-            clock=clock,
+            clock=errand.clock,
             address=str(self.connection),
-            home=replace(start, z_m=0.0),
-            settings=DriverSettings(arms=may_move, settle_s=0.0),
-            content=content,
+            home=replace(errand.start, z_m=0.0),
+            settings=DriverSettings(arms=errand.may_move, settle_s=0.0),
+            content=errand.content,
         )
 
     async def place(self) -> "ServedPlace | None":
