@@ -93,6 +93,17 @@ def test_threads_and_order_change_nothing(park: Scene) -> None:
     assert [digest(alone.picture(pose, CAMERA)) for pose in some_poses()] == expected
 
 
+@pytest.mark.parametrize("conditions", ["clear", "rain"])
+def test_how_many_threads_shade_a_picture_changes_nothing(conditions: str, park: Scene) -> None:
+    alone, several = Renderer(park, PRESETS[conditions]), Renderer(park, PRESETS[conditions], threads=3)
+    for pose in some_poses()[:4]:
+        for antialias in (1, 2):
+            expected = digest(alone.picture(pose, CAMERA, antialias=antialias))
+            assert digest(several.picture(pose, CAMERA, antialias=antialias)) == expected
+    with pytest.raises(SettingsError, match="0 threads; expected 1 or more"):
+        Renderer(park, threads=0)
+
+
 def test_room_for_few_shadow_tiles_changes_nothing(park: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
     expected = [digest(Renderer(park).picture(pose, CAMERA)) for pose in some_poses()]
     monkeypatch.setattr("reasoned_explorer.rendering.shadows.FINE_TILES", 40)

@@ -16,7 +16,7 @@ from reasoned_explorer.model import Camera, Fault, Gathering, SettingsError
 from reasoned_explorer.model.checks import is_within
 from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.rendering.conditions import conditions_named
-from reasoned_explorer.rendering.readiness import begin, is_ready, make_ready
+from reasoned_explorer.rendering.readiness import begin, cores, is_ready, make_ready
 from reasoned_explorer.world.opening import check_world_name, open_world_with_notes
 from reasoned_explorer.world.world import World
 
@@ -287,7 +287,7 @@ def _drawn(order: _Order, world: World, pose: Pose, stage: Callable[[str], None]
             True,
             scene,
         )
-    return _around(order, Renderer(scene, conditions), pose), False, scene
+    return _around(order, Renderer(scene, conditions, threads=cores()), pose), False, scene
 
 
 def _make_ready(stage: Callable[[str], None]) -> None:

@@ -58,6 +58,11 @@ def make_ready(on_progress: Progress | None = None) -> None:
         _work.finish(on_progress or _nobody)
 
 
+def cores() -> int:
+    """Return how many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 def is_kept(part: str) -> bool:
     """Return whether a part is compiled already."""
     folder = cache_folder()
@@ -284,10 +289,5 @@ def _fingerprint() -> str:
     return found.hexdigest()
 
 
-def _cores() -> int:
-    """How many processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 #: This process compiles, too.
-_work = Work(PARTS, _compile, _command_for, min(_cores(), len(PARTS)) - 1 if sys.executable else 0)
+_work = Work(PARTS, _compile, _command_for, min(cores(), len(PARTS)) - 1 if sys.executable else 0)

@@ -1,13 +1,14 @@
 """Pictures of a scene: colour, depth and which thing is seen in every pixel."""
 
 import threading
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reasoned_explorer.geometry import Pose
-from reasoned_explorer.model import Camera
+from reasoned_explorer.model import Camera, Fault, SettingsError
 from reasoned_explorer.rendering.conditions import Conditions
 from reasoned_explorer.rendering.light import developing_curve, light_of, sun_direction
 from reasoned_explorer.rendering.mipmaps import ground_looks_of, material_textures, surfaces_of
@@ -23,6 +24,8 @@ from reasoned_explorer.rendering.shadows import ShadowTiles
 DENSITY = 1.5
 #: A scene's first picture is looked at in so many pixels apart before it is drawn.
 _QUICK_STEP = 8
+#: Rows that one thread shades before it is another's turn: sky is quickly done, and all of it is above.
+_BAND = 8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,12 +62,25 @@ class Renderer:
     Args:
         scene: What there is.
         conditions: Time of day and weather.
+        threads: How many shade each picture, from 1 on: more is faster where a person waits for a large picture, and
+            nothing where many pictures are drawn at once.
         on_progress: Told what takes long, now and then, where the kernels have to be compiled first.
+
+    Raises:
+        SettingsError: If there are fewer threads than one.
     """
 
     def __init__(
-        self, scene: Scene, conditions: Conditions | None = None, *, on_progress: Progress | None = None
+        self,
+        scene: Scene,
+        conditions: Conditions | None = None,
+        *,
+        threads: int = 1,
+        on_progress: Progress | None = None,
     ) -> None:
+        if threads < 1:
+            raise SettingsError("renderer", [Fault(f"{threads} threads", "1 or more")])
+        self._threads = threads
         self.scene = scene
         self.conditions = conditions or Conditions()
         self._light = light_of(self.conditions)
@@ -126,21 +142,7 @@ class Renderer:
         while True:
             wanted[:] = 0
             with self._shadows.shading():
-                done = shade(
-                    self._surfaces,
-                    self._looks,
-                    self._textures,
-                    self._light,
-                    self._shadows.maps,
-                    view,
-                    canvas,
-                    self._curve,
-                    wanted,
-                    *self._room().samples,
-                    step,
-                    rows,
-                    colour,
-                )
+                done = self._shade(view, canvas, step, rows, colour)
             if done and step == 1:
                 return colour
             # Wet ground mirrors rows above it, which may have been wrong.
@@ -148,6 +150,42 @@ class Renderer:
                 rows[:] = 1
             step = 1
             self._shadows.make(wanted)
+
+    def _shade(
+        self, view: Projection, canvas: Canvas, step: int, rows: NDArray[np.uint8], colour: NDArray[np.uint8]
+    ) -> bool:
+        """Shade the rows that are marked, and note which shadow tiles are wanted; see `shade`."""
+        wanted = self._room().wanted
+
+        def shade_some(rows: NDArray[np.uint8], wanted: NDArray[np.uint8]) -> bool:
+            return shade(
+                self._surfaces,
+                self._looks,
+                self._textures,
+                self._light,
+                self._shadows.maps,
+                view,
+                canvas,
+                self._curve,
+                wanted,
+                np.empty(4, np.int32),
+                np.empty(4, np.int32),
+                step,
+                rows,
+                colour,
+            )
+
+        # A quick look is not worth threads, and what wet ground mirrors has to be there first.
+        if self._threads == 1 or step > 1 or self._light.wetness > 0.0:
+            return shade_some(rows, wanted)
+        turns = np.arange(len(rows)) // _BAND % self._threads
+        shares = [rows * (turns == k) for k in range(self._threads)]
+        missing = [np.zeros_like(wanted) for _ in shares]
+        with ThreadPoolExecutor(self._threads) as pool:
+            done = all(list(pool.map(shade_some, shares, missing)))
+        rows[:] = np.maximum.reduce(shares)
+        wanted[:] = np.maximum.reduce(missing)
+        return done
 
     def _room(self) -> Room:
         if not hasattr(self._rooms, "room"):

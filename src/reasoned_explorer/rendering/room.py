@@ -11,7 +11,6 @@ class Room:
 
     Attributes:
         scratch: What is worked out on the way.
-        samples: For the shader: owner and triangle of each sample of a pixel.
         wanted: For the shader: which shadow tiles are missing.
         canvases: Those of pictures of one size.
     """
@@ -29,7 +28,6 @@ class Room:
             np.empty(BUCKETS + 1, np.int32),
             np.empty((3, 4)),
         )
-        self.samples = np.empty(4, np.int32), np.empty(4, np.int32)
         self.wanted = np.zeros(wanted_size, np.uint8)
         self.canvases: dict[tuple[int, int], Canvas] = {}
 
