@@ -19,7 +19,8 @@ def news(autopilot: Autopilot, moment: Moment, *, lived: bool) -> Telemetry:
         lived: Whether its time passes by itself.
     """
     told = autopilot.telemetry
-    now_s = told.boot_s + (max(0.0, autopilot.now_s() - told.boot_at_s) if lived else 0.0)
+    # Up to when anything was last heard: what is silent after that is the link.
+    now_s = told.boot_s + (max(0.0, told.heard_at_s - told.boot_at_s) if lived else 0.0)
     ages_s = [max(0.0, now_s - at_s) for at_s in (told.place_boot_s, told.fix_boot_s) if at_s is not None]
     return Telemetry(
         pose=moment.believed,

@@ -79,8 +79,11 @@ class MavlinkVehicle(Vehicle):
 
     @property
     def pose(self) -> Pose:
-        """Where the autopilot believed the vehicle to be when it last moved or looked."""
-        return self._body.pose
+        """Where the autopilot believed the vehicle to be when it last moved or looked; a rover's height is its camera's."""
+        return self._at_height(self._body.pose)
+
+    def _at_height(self, pose: Pose) -> Pose:
+        return pose if self.profile.flies else replace(pose, z_m=self.profile.camera_height_m)
 
     @property
     def battery(self) -> Battery:
@@ -90,7 +93,8 @@ class MavlinkVehicle(Vehicle):
     def telemetry(self) -> Telemetry:
         """Return what a guard is told: what is known now, also on the way."""
         moment = self._pace.moment() if self._has_moment else self._body.moment
-        return news(self.autopilot, moment, lived=self._pace.is_lived)
+        told = news(self.autopilot, moment, lived=self._pace.is_lived)
+        return replace(told, pose=self._at_height(told.pose))
 
     @property
     def _has_moment(self) -> bool:
@@ -280,7 +284,7 @@ class MavlinkVehicle(Vehicle):
         self._check()
         self._legs, self._looks = self._legs + 1, 0
         await self._catch_up()
-        aim = replace(target, z_m=self.profile.camera_height_m if self.profile.flies else self.pose.z_m)
+        aim = replace(target, z_m=self.profile.camera_height_m if self.profile.flies else self._body.pose.z_m)
         watch = LegWatch(
             aim, self.settings, max(self.profile.settle_s, self._settle_s), self._clock.now_s(), self._body.moment
         )
