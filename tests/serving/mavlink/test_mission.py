@@ -77,7 +77,7 @@ def test_the_same_seed_chooses_the_same_frontiers_as_in_process(
 
 @pytest.mark.parametrize("flavour", ["ardurover", "px4-rover"])
 def test_a_rovers_mission_chooses_the_same_frontiers_as_in_process(atlas: Atlas, flavour: str) -> None:
-    """A rover turns when it is there, the embedded walker on its last step: they differ by millimetres."""
+    """A rover turns by a command of its own when it is there, with noise drawn anew: places differ by centimetres."""
     goal = "Find me a fire hydrant"
     settings = MissionSettings(seed=6, eyes="lines", vehicle="go1", explorer=ExplorerSettings(max_steps=4))
     reference = Mission(goal, atlas, settings).run().record
@@ -87,5 +87,5 @@ def test_a_rovers_mission_chooses_the_same_frontiers_as_in_process(atlas: Atlas,
         assert step.choice is not None
         assert expected.choice is not None
         assert step.choice.frontier == expected.choice.frontier
-        assert step.pose == pytest.approx(expected.pose, abs=0.05)
+        assert step.pose == pytest.approx(expected.pose, abs=0.3)
         assert [leg.outcome for leg in step.legs] == [leg.outcome for leg in expected.legs]

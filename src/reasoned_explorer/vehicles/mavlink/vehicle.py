@@ -79,7 +79,7 @@ class MavlinkVehicle(Vehicle):
 
     @property
     def pose(self) -> Pose:
-        """Where the autopilot believed the vehicle to be when it last moved or looked; a rover's height is its camera's."""
+        """Where the autopilot believed it to be when it last moved or looked; a rover's height is its camera's."""
         return self._at_height(self._body.pose)
 
     def _at_height(self, pose: Pose) -> Pose:
