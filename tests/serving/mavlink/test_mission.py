@@ -73,3 +73,19 @@ def test_the_same_seed_chooses_the_same_frontiers_as_in_process(
     expected_legs = [leg for step in reference.steps for leg in step.legs]
     assert [leg.outcome for leg in legs] == [leg.outcome for leg in expected_legs]
     assert [leg.duration_s for leg in legs] == pytest.approx([leg.duration_s for leg in expected_legs], abs=0.051)
+
+
+@pytest.mark.parametrize("flavour", ["ardurover", "px4-rover"])
+def test_a_rovers_mission_chooses_the_same_frontiers_as_in_process(atlas: Atlas, flavour: str) -> None:
+    """A rover turns by a command of its own when it is there, with noise drawn anew: places differ by centimetres."""
+    goal = "Find me a fire hydrant"
+    settings = MissionSettings(seed=6, eyes="lines", vehicle="go1", explorer=ExplorerSettings(max_steps=4))
+    reference = Mission(goal, atlas, settings).run().record
+    record = over_the_wire(goal, atlas, settings, flavour=flavour)
+    assert len(record.steps) == 4
+    for step, expected in zip(record.steps, reference.steps, strict=True):
+        assert step.choice is not None
+        assert expected.choice is not None
+        assert step.choice.frontier == expected.choice.frontier
+        assert step.pose == pytest.approx(expected.pose, abs=0.3)
+        assert [leg.outcome for leg in step.legs] == [leg.outcome for leg in expected.legs]

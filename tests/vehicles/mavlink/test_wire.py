@@ -4,16 +4,20 @@ import contextlib
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from reasoned_explorer.geometry import GeoOrigin, Pose
 from reasoned_explorer.model import SettingsError
 from reasoned_explorer.vehicles.mavlink.address import Address, Wire
+from reasoned_explorer.vehicles.mavlink.autopilot import Autopilot
 from reasoned_explorer.vehicles.mavlink.dialect import Packer, Parser, dialect, text_of
 from reasoned_explorer.vehicles.mavlink.flavours import ARDUROVER, FLAVOURS, PX4_COPTER, flavour_of
 from reasoned_explorer.vehicles.mavlink.lockstep import Ask, Report, Request
+from reasoned_explorer.vehicles.mavlink.news import news
+from reasoned_explorer.vehicles.mavlink.pace import Moment
 from reasoned_explorer.vehicles.mavlink.setpoints import Setpoint
+from reasoned_explorer.vehicles.mavlink.settings import DriverSettings
 from reasoned_explorer.vehicles.mavlink.telemetry import Telemetry
 
 pytest.importorskip("pymavlink")
@@ -145,3 +149,42 @@ def framed(mavlink, kind, payload):
 def test_texts_keep_to_what_can_be_printed():
     assert text_of(b"PreArm: \x00\x1b[31mhot") == "PreArm: [31mhot"
     assert len(text_of("a" * 500)) == 50
+
+
+@given(st.data())
+@settings(max_examples=60, deadline=None)
+def test_whatever_an_autopilot_says_the_driver_moves_nothing_and_tells_only_numbers(data):
+    """Any message with any contents, from the autopilot that is listened to, and bytes that are none in between."""
+    mavlink = dialect()
+    autopilot = Autopilot(Address.read("udpin:127.0.0.1:14550"), DriverSettings())
+    autopilot.link.take(Packer(1, 1).pack(mavlink.MAVLink_heartbeat_message(2, 3, 81, 4, 4, 3)))
+    sent = []
+    autopilot.link.send = sent.append
+    for _ in range(4):
+        kind = mavlink.mavlink_map[data.draw(st.sampled_from(sorted(mavlink.mavlink_map)))]
+        payload = data.draw(st.binary(min_size=kind.unpacker.size, max_size=kind.unpacker.size))
+        autopilot.link.take(framed(mavlink, kind, payload))
+        autopilot.link.take(data.draw(st.binary(max_size=40)))
+    assert sent == []
+    told = news(autopilot, Moment(0.0, Pose(0.0, 0.0), Pose(0.0, 0.0), 0.0), lived=True)
+    ages = told.link_age_s, told.position_age_s, told.t_s
+    assert all(age is None or (math.isfinite(age) and age >= 0.0) for age in ages)
+    assert told.battery is None or 0.0 <= told.battery <= 1.0
+
+
+def test_the_same_fix_told_again_grows_old():
+    mavlink, told = dialect(), Telemetry()
+
+    def fix(time_us, kind):
+        return mavlink.MAVLink_gps_raw_int_message(time_us, kind, 1, 1, 0, 70, 120, 0, 0, 18)
+
+    def at(boot_ms):
+        return mavlink.MAVLink_attitude_message(boot_ms, 0.0, 0.0, 0.0, 0.0, 0.0, 0.1)
+
+    for message in (at(1000), fix(1_000_000, 3), at(2000), fix(1_000_000, 3)):
+        told.take(message, 0.0)
+    assert (told.fix_boot_s, told.yaw_rate_radps) == (1.0, pytest.approx(0.1))
+    told.take(fix(2_000_000, 1), 0.0)  # no fix
+    assert told.fix_boot_s == 1.0
+    told.take(fix(2_100_000, 3), 0.0)
+    assert told.fix_boot_s == 2.0

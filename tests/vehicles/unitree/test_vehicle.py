@@ -12,7 +12,7 @@ from reasoned_explorer.geometry import Pose, bearing_between_rad
 from reasoned_explorer.model import LegOutcome, PartError, SettingsError
 from reasoned_explorer.vehicles import PROFILES
 from reasoned_explorer.vehicles.positioning import PositionLimits
-from reasoned_explorer.vehicles.unitree import Mode
+from reasoned_explorer.vehicles.unitree import HighCommand, Mode
 from reasoned_explorer.vehicles.unitree.settings import WalkSettings
 from reasoned_explorer.vehicles.unitree.vehicle import Go1Vehicle
 from reasoned_explorer.world.atlas import Atlas
@@ -279,3 +279,29 @@ def test_a_link_that_is_lost_stops_the_leg_and_the_next_is_walked_when_it_is_bac
     assert lost.outcome is LegOutcome.STOPPED
     assert "the link is lost" in lost.detail
     assert later.outcome is LegOutcome.ARRIVED
+
+
+def test_only_connected_it_looks_as_it_lies_and_does_not_walk(atlas):
+    """For a dry run: whatever it is asked, it stays as it is; `start` then has it get up."""
+    with served(atlas) as server:
+        clock, walker = VirtualClock(), server.walker
+        for _ in range(60):
+            walker.obey(HighCommand(Mode.LIE_DOWN))
+            walker.tick()
+        vehicle = Go1Vehicle(GO1, clock=clock, host="127.0.0.1", port=server.port, home=HOME)
+
+        async def script():
+            await vehicle.connect()
+            (view,) = await vehicle.look([math.pi])
+            with pytest.raises(PartError, match="not started"):
+                await vehicle.go_to(Pose(55.0, 50.0))
+            was_up = walker.is_upright
+            await vehicle.start()
+            stands = walker.is_upright
+            await vehicle.close()
+            return view, was_up, stands
+
+        view, was_up, stands = clock.run(script())
+        assert (was_up, stands) == (False, True)
+        assert view.pose.heading_rad == pytest.approx(HOME.heading_rad)
+        assert walker.body.true_pose.distance_to_m(HOME.x_m, HOME.y_m) < 0.01

@@ -61,6 +61,11 @@ class Timeline:
         return max(self._base_s, min(self._limit_s, self._base_s + passed_s))
 
     @property
+    def is_stepped(self) -> bool:
+        """Whether somebody holds time, or has it pass a little and then holds it."""
+        return self._limit_s < math.inf
+
+    @property
     def is_held(self) -> bool:
         """Whether time does not pass now."""
         return self._limit_s <= self.now_s + _SAME_S

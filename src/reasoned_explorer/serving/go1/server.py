@@ -6,6 +6,7 @@ from reasoned_explorer.model import Fault, SettingsError
 from reasoned_explorer.model.checks import is_within
 from reasoned_explorer.serving.go1.gnss import GnssServer
 from reasoned_explorer.serving.go1.walker import Walker, numbered
+from reasoned_explorer.simulation.mishaps import MishapKind
 from reasoned_explorer.simulation.motion import TICK_S
 from reasoned_explorer.vehicles.unitree.codec import PacketError, decode_command, encode_state
 from reasoned_explorer.vehicles.unitree.lockstep import MOST_MOMENTS
@@ -91,7 +92,7 @@ class Go1Server(asyncio.DatagramProtocol):
 
     def datagram_received(self, data: bytes, addr: tuple[str, int]) -> None:
         """Take a command; a packet that is none is counted and does nothing."""
-        if self.is_dumb:
+        if self.is_dumb or self._is_cut_off:
             return
         try:
             command = decode_command(data)
@@ -108,12 +109,28 @@ class Go1Server(asyncio.DatagramProtocol):
             self.walker.obey(command)
             for _ in range(min(max(1, command.band_width), MOST_MOMENTS)):
                 self._tick()
+                if self._is_cut_off:
+                    self._go_on_alone()
+                    return
             fixes = 0 if self.gnss is None else self.gnss.sent
             self._answer = encode_state(numbered(self.walker.state(), self._number, fixes))
         self._send(self._answer)
 
     def error_received(self, exc: Exception) -> None:
         """Nothing: who went away hears nothing."""
+
+    @property
+    def _is_cut_off(self) -> bool:
+        """Whether its link is lost; its receiver is on another one."""
+        return self.walker.mishaps.at(MishapKind.LINK_LOSS, self.walker.time_s) is not None
+
+    def _go_on_alone(self) -> None:
+        """Do in step what it does by itself on real time: walk on for a while, and stand since nobody is heard."""
+        for _ in range(round(self._silence_s / TICK_S)):
+            self._tick()
+        self.walker.obey(HighCommand.standing())
+        while not self.walker.body.is_resting:
+            self._tick()
 
     def _send(self, packet: bytes) -> None:
         if self._transport is not None and self._peer is not None and not self._transport.is_closing():
@@ -136,6 +153,6 @@ class Go1Server(asyncio.DatagramProtocol):
                     self.walker.obey(HighCommand.standing())
                 self._tick()
                 ticked_s += TICK_S
-            if self._peer is not None and not self.is_dumb:
+            if self._peer is not None and not self.is_dumb and not self._is_cut_off:
                 self._send(encode_state(self.walker.state()))
             await asyncio.sleep(1.0 / self._rate_hz)

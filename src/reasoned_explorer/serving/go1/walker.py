@@ -1,10 +1,12 @@
 """The served robot: the embedded simulator's body, walked by a Go1's commands."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from reasoned_explorer.geometry import Pose
+from reasoned_explorer.simulation.mishaps import Mishap, MishapKind, Mishaps
 from reasoned_explorer.simulation.motion import TICK_S
 from reasoned_explorer.simulation.sensors import SensorNoise, sensor_noise
 from reasoned_explorer.simulation.vehicle import check_start
@@ -53,6 +55,8 @@ class Walker:
         start: Where it stands at the start.
         noise: How its sensors err, or the name of a preset.
         seed: Of all draws.
+        mishaps: What befalls it, on its own seconds: its receiver is silent or jumps, its yaw turns, its battery is
+            low. It has no compass: its yaw is what serves for one.
 
     Raises:
         StartError: If it cannot stand there.
@@ -67,11 +71,13 @@ class Walker:
         *,
         noise: SensorNoise | str = "none",
         seed: int = 0,
+        mishaps: Sequence[Mishap] = (),
     ) -> None:
         check_start(atlas, profile, start)
         self.noise = sensor_noise(noise) if isinstance(noise, str) else noise
         self.body = WalkedBody(atlas, profile, self.noise, start, seed=seed)
         self.health = Health()
+        self.mishaps = Mishaps(tuple(mishaps))
         self.ticks = 0
         #: What the receiver last said.
         self.fix = SatelliteFix(True, start.x_m, start.y_m)  # noqa: FBT003 - has a fix
@@ -115,8 +121,11 @@ class Walker:
             elif command.mode in (Mode.GET_UP, Mode.RECOVER):
                 self._height = min(_POSTURE_TICKS, self._height + 1)
         self.ticks += 1
-        if fix is not None:
-            self.fix = fix
+        if fix is None or self.mishaps.at(MishapKind.POSITION_SILENCE, self.time_s):
+            return None
+        if fix.has_fix and (jump := self.mishaps.at(MishapKind.POSITION_JUMP, self.time_s)):
+            fix = replace(fix, x_m=fix.x_m + jump.amount)
+        self.fix = fix
         return fix
 
     @property
@@ -133,7 +142,9 @@ class Walker:
     def state(self) -> HighState:
         """Return what it says of itself."""
         sensed, health = self.body.sensed, self.health
-        yaw_left = math.remainder(-sensed.yaw_rad, 2.0 * math.pi)
+        turned, low = (self.mishaps.at(kind, self.time_s) for kind in (MishapKind.COMPASS_OFF, MishapKind.BATTERY_LOW))
+        yaw_rad = sensed.yaw_rad + (0.0 if turned is None else turned.amount)
+        yaw_left = math.remainder(-yaw_rad, 2.0 * math.pi)
         half = 0.5 * yaw_left
         share = self._height / _POSTURE_TICKS
         motor = MotorReading(mode=10, temperature_c=health.motor_c)
@@ -148,7 +159,7 @@ class Walker:
             motors=(motor,) * 12 + (MotorReading(),) * 8,
             battery=BatteryReading(
                 status=8,
-                charge_percent=health.charge_percent,
+                charge_percent=health.charge_percent if low is None else round(100.0 * low.amount),
                 current_ma=-3000,
                 battery_temperature_c=(30, 30),
                 board_temperature_c=(32, 32),

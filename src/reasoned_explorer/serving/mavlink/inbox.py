@@ -9,7 +9,13 @@ from reasoned_explorer.geometry.frames import is_finite
 from reasoned_explorer.serving.mavlink.pilot import ACCEPTED, DENIED, FARTHEST_M, UNSUPPORTED, Pilot, Target
 from reasoned_explorer.serving.mavlink.teller import GROUND_MM, Teller
 from reasoned_explorer.vehicles.mavlink.flavours import GCS_TYPE
-from reasoned_explorer.vehicles.mavlink.setpoints import LOCAL_NED, NO_POSITION, NO_VELOCITY, NO_YAW
+from reasoned_explorer.vehicles.mavlink.setpoints import (
+    LOCAL_NED,
+    NO_POSITION,
+    NO_VELOCITY,
+    NO_YAW,
+    NO_YAW_RATE,
+)
 
 Reply = Callable[[Any], None]
 _FORCED = 21196
@@ -234,9 +240,21 @@ class Inbox:
         if not has_place and has_velocity and any((message.vx, message.vy, message.vz)):
             return  # flying by velocity is not served
         if not (has_place or has_velocity or has_yaw):
-            return
+            # What is left is a turn rate: nothing's stands; turning on and on is not served.
+            if mask & NO_YAW_RATE or message.yaw_rate != 0.0:
+                return
+        elif self._turns_north(
+            has_place=has_place, has_velocity=has_velocity, has_yaw=has_yaw, is_free=bool(mask & NO_YAW_RATE)
+        ):
+            target = target._replace(heading_rad=0.0)
+            has_yaw = True
         place = target[:3] if has_place else (math.nan,) * 3
         self._pilot.go(Target(*place, target.heading_rad if has_yaw else math.nan))
+
+    def _turns_north(self, *, has_place: bool, has_velocity: bool, has_yaw: bool, is_free: bool) -> bool:
+        """Whether a velocity of nothing, whose direction is north, is taken for a heading: ArduPilot's rovers do so."""
+        flavour = self._pilot.flavour
+        return has_velocity and is_free and not (has_place or has_yaw or flavour.flies or flavour.is_px4)
 
     def _is_near(self, target: Target) -> bool:
         home = self._pilot.drone.start

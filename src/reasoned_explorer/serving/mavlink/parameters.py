@@ -8,8 +8,10 @@ from reasoned_explorer.vehicles.mavlink.flavours import Flavour
 
 #: Kinds of values on the wire, of the enumeration MAV_PARAM_TYPE.
 INT32, REAL32 = 6, 9
-#: What the failsafe for a lost ground station does: nothing, stay, come home.
-NOTHING, HOLD, HOME = 0, 1, 2
+#: What the failsafe for a lost ground station does: nothing, stay, come home, land.
+NOTHING, HOLD, HOME, LANDING = 0, 1, 2, 3
+#: What a number of ArduCopter's FS_GCS_ENABLE means; others are not served.
+_COPTER_ACTIONS = {0: NOTHING, 1: HOME, 5: LANDING, 7: HOLD}
 
 
 @dataclass(slots=True)
@@ -49,7 +51,7 @@ class Parameters:
             }
         elif flavour.flies:
             made = {
-                "FS_GCS_ENABLE": Parameter(1.0, 0.0, 2.0),
+                "FS_GCS_ENABLE": Parameter(1.0, 0.0, 7.0),
                 "FS_GCS_TIMEOUT": Parameter(5.0, 2.0, 120.0),
                 "LAND_SPEED": Parameter(100.0, 30.0, 200.0),
                 "SYSID_THISMAV": Parameter(1.0, 1.0, 255.0),
@@ -58,7 +60,8 @@ class Parameters:
         else:
             made = {
                 "FS_ACTION": Parameter(2.0, 0.0, 2.0),
-                "FS_TIMEOUT": Parameter(5.0, 1.0, 100.0),
+                "FS_GCS_TIMEOUT": Parameter(5.0, 2.0, 120.0),
+                "FS_TIMEOUT": Parameter(1.5, 1.0, 100.0),
                 "SYSID_THISMAV": Parameter(1.0, 1.0, 255.0),
                 "WP_SPEED": Parameter(speed_mps, 0.05, 100.0),
             }
@@ -100,13 +103,14 @@ class Parameters:
             return round(self["NAV_DLL_ACT"].value)
         if "FS_ACTION" in self._all:
             return {0: NOTHING, 1: HOME, 2: HOLD}[round(self["FS_ACTION"].value)]
-        return HOME if self["FS_GCS_ENABLE"].value else NOTHING
+        return _COPTER_ACTIONS.get(round(self["FS_GCS_ENABLE"].value), HOME)
 
     @property
     def station_lost_s(self) -> float:
         """After how many seconds without its heartbeat it is."""
-        name = next(one for one in ("COM_DL_LOSS_T", "FS_GCS_TIMEOUT", "FS_TIMEOUT") if one in self._all)
-        return self[name].value
+        # A rover of ArduPilot waits for one and then for the other.
+        names = ("COM_DL_LOSS_T", "FS_GCS_TIMEOUT", "FS_TIMEOUT")
+        return sum(self[name].value for name in names if name in self._all)
 
     def _from_wire(self, one: Parameter, value: float) -> float:
         if self._is_px4 and one.kind == INT32 and math.isfinite(value):

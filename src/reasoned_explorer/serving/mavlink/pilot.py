@@ -2,13 +2,15 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple
 
 from reasoned_explorer.geometry import Pose, bearing_between_rad, normalise_heading_rad
 from reasoned_explorer.serving.airsim.drone import CLIMB_MPS, Drone
 from reasoned_explorer.serving.airsim.flight import Flight, State
 from reasoned_explorer.serving.airsim.timeline import Alarm, Timeline
-from reasoned_explorer.serving.mavlink.parameters import HOLD, HOME, NOTHING, Parameters
+from reasoned_explorer.serving.mavlink.parameters import HOLD, HOME, LANDING, NOTHING, Parameters
+from reasoned_explorer.simulation.mishaps import MishapKind, Mishaps
 from reasoned_explorer.vehicles.mavlink.flavours import Flavour
 
 #: Answers to commands, of the enumeration MAV_RESULT.
@@ -26,6 +28,10 @@ _LONGEST_S = 7200.0
 _ENDURANCE_S = 1800.0
 #: Setpoints that came within so many seconds let PX4 take its guided mode.
 _FRESH_S = 1.0
+
+
+#: Nothing befalls it.
+NO_MISHAPS = Mishaps()
 
 
 class Target(NamedTuple):
@@ -52,6 +58,8 @@ class Pilot:
         flavour: As which autopilot.
         say: Called with a severity and a text for the ground station.
         real_s: Returns seconds by which links are judged.
+        mishaps: What befalls it, on the timeline's seconds. They change what it tells and obeys; a way that it is on is
+            not steered by a wrong position in the meantime.
     """
 
     def __init__(
@@ -62,7 +70,9 @@ class Pilot:
         *,
         say: Callable[[int, str], None],
         real_s: Callable[[], float],
+        mishaps: Mishaps = NO_MISHAPS,
     ) -> None:
+        self.mishaps = mishaps
         self.drone, self.timeline, self.flavour = drone, timeline, flavour
         self.parameters = Parameters(flavour, drone.profile.speed_mps)
         self._say, self._real_s = say, real_s
@@ -102,12 +112,21 @@ class Pilot:
     @property
     def battery(self) -> float:
         """What is left of the battery, 0 to 1."""
+        if low := self.mishaps.at(MishapKind.BATTERY_LOW, self.now_s):
+            return low.amount
         used_s = self._used_s + (self.now_s - self._armed_at_s if self.is_armed else 0.0)
         return max(0.0, 1.0 - used_s / _ENDURANCE_S)
 
     def belief(self) -> State:
         """Return where it takes itself to be."""
-        return self.drone.belief(self.now_s)
+        here = self.drone.belief(self.now_s)
+        told = self.mishaps.told(_pose(here), self.now_s)
+        return here._replace(x_m=told.x_m, heading_rad=told.heading_rad)
+
+    def _for_body(self, pose: Pose) -> Pose:
+        """Return a pose in the frame that the body steers by, which no mishap leads astray."""
+        astray = self.mishaps.told(Pose(0.0, 0.0), self.now_s)
+        return replace(pose, x_m=pose.x_m - astray.x_m, heading_rad=pose.heading_rad - astray.heading_rad)
 
     # Commands. Each returns an answer of the enumeration MAV_RESULT.
 
@@ -195,7 +214,8 @@ class Pilot:
                 return False
             self._go(target, here)
         elif has_heading and abs(bearing_between_rad(here.heading_rad, target.heading_rad)) > _FACED_RAD:
-            self._begin(lambda now_s: self.drone.turn(now_s, normalise_heading_rad(target.heading_rad)))
+            facing = self._for_body(Pose(0.0, 0.0, 0.0, target.heading_rad)).heading_rad
+            self._begin(lambda now_s: self.drone.turn(now_s, normalise_heading_rad(facing)))
         else:
             self.stand()
             self._target = target
@@ -219,15 +239,37 @@ class Pilot:
             return
         now_s = self._real_s()
         if self._has_lost_setpoints(now_s):
-            self._say(CRITICAL, "Offboard control lost: hold")
-            self.change_mode("LOITER")
+            self._miss_setpoints()
             return
         action = self.parameters.station_action
         if self._station_s is None or action == NOTHING or self.mode in {"RTL", "LAND", self.flavour.hold}:
             return
         if now_s - self._station_s > self.parameters.station_lost_s:
-            self._say(CRITICAL, "GCS Failsafe")
-            self.change_mode({HOLD: self.flavour.hold, HOME: "RTL"}[action])
+            self._miss_station(action)
+
+    def lose_link(self) -> None:
+        """Do what is to be done where nobody is heard from now on, on the timeline's seconds.
+
+        For a link that is lost while time is held: it then goes on, whoever held it cannot let it go any more.
+        """
+        self.timeline.let_go()
+        if not self.is_armed:
+            return
+        if self.flavour.is_px4 and self.is_guided:
+            due_s = self.parameters["COM_OF_LOSS_T"].value
+            self.timeline.at(self.now_s + due_s, self._miss_setpoints)
+        elif (action := self.parameters.station_action) != NOTHING:
+            due_s = self.parameters.station_lost_s
+            self.timeline.at(self.now_s + due_s, lambda: self._miss_station(action))
+
+    def _miss_setpoints(self) -> None:
+        self._say(CRITICAL, "Offboard control lost: hold")
+        self.change_mode("LOITER")
+
+    def _miss_station(self, action: int) -> None:
+        self._say(CRITICAL, "GCS Failsafe")
+        land = "LAND" if self.flavour.flies else self.flavour.hold
+        self.change_mode({HOLD: self.flavour.hold, HOME: "RTL", LANDING: land}[action])
 
     def _has_lost_setpoints(self, now_s: float) -> bool:
         if not (self.flavour.is_px4 and self.is_guided) or self._setpoint_s is None:
@@ -248,12 +290,12 @@ class Pilot:
         if is_above and not face:
             self._begin(lambda now_s: drone.climb(now_s, z_m))
             return
-        pose = Pose(target.x_m, target.y_m, z_m, heading_rad)
+        pose = self._for_body(Pose(target.x_m, target.y_m, z_m, heading_rad))
         self._begin(lambda now_s: drone.fly(now_s, [pose], speed_mps=self.speed_mps, face=face))
 
     def _come_home(self) -> None:
         home, z_m = self.drone.start, self.drone.state(self.now_s).z_m
-        pose = Pose(home.x_m, home.y_m, z_m, home.heading_rad)
+        pose = self._for_body(Pose(home.x_m, home.y_m, z_m, home.heading_rad))
         then = self._land if self.flavour.flies else None
         self._begin(lambda now_s: self.drone.fly(now_s, [pose], speed_mps=self.speed_mps, face=False), then=then)
 
@@ -288,3 +330,7 @@ class Pilot:
         alarms, self._alarms, self.motion_ends_s = self._alarms, [], None
         for alarm in alarms:
             self.timeline.cancel(alarm)
+
+
+def _pose(state: State) -> Pose:
+    return Pose(state.x_m, state.y_m, state.z_m, state.heading_rad)

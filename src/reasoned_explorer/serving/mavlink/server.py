@@ -2,16 +2,18 @@
 
 import asyncio
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Fault, SettingsError, UnknownNameError
 from reasoned_explorer.serving.airsim.drone import Drone
 from reasoned_explorer.serving.airsim.timeline import Timeline
-from reasoned_explorer.serving.mavlink.inbox import Inbox
+from reasoned_explorer.serving.mavlink.inbox import Inbox, Reply
 from reasoned_explorer.serving.mavlink.pilot import Pilot
 from reasoned_explorer.serving.mavlink.steps import Steps
-from reasoned_explorer.serving.mavlink.teller import Teller
+from reasoned_explorer.serving.mavlink.teller import FRESH, Teller
+from reasoned_explorer.simulation.mishaps import Mishap, MishapKind, Mishaps
 from reasoned_explorer.simulation.sensors import SensorNoise
 from reasoned_explorer.vehicles.mavlink.dialect import Packer, Parser, dialect
 from reasoned_explorer.vehicles.mavlink.flavours import FLAVOURS
@@ -49,6 +51,8 @@ class MavlinkServer:
         noise: How the sensors err by which the machine steers.
         seed: Of all draws.
         system: The machine's number on the wire.
+        mishaps: What befalls it, on its own seconds, which begin with 0. While its link is lost it neither hears nor
+            says anything, and acts as its failsafes say. It has no camera: pictures come by another way.
 
     Raises:
         SettingsError: If a setting is out of range.
@@ -70,6 +74,7 @@ class MavlinkServer:
         noise: SensorNoise | str = "none",
         seed: int = 0,
         system: int = 1,
+        mishaps: Sequence[Mishap] = (),
     ) -> None:
         if flavour not in FLAVOURS:
             raise UnknownNameError("autopilot", flavour, tuple(FLAVOURS))
@@ -89,10 +94,11 @@ class MavlinkServer:
         self._loop = asyncio.get_running_loop()
         self.timeline = Timeline(speed)
         drone = Drone(atlas, profile, start, noise=noise, seed=seed)
-        self.pilot = Pilot(drone, self.timeline, which, say=self._say, real_s=self._loop.time)
+        befalls = Mishaps(tuple(mishaps))
+        self.pilot = Pilot(drone, self.timeline, which, say=self._say, real_s=self._loop.time, mishaps=befalls)
         self.teller = Teller(self.pilot, self._dialect, noise=noise if isinstance(noise, str) else "")
         self._inbox = Inbox(self.pilot, self.teller, self._dialect, system=system)
-        self._steps = Steps(self.pilot, self._dialect)
+        self._steps = Steps(self.pilot, self._dialect, tell=self._tell_fresh, on_hold=self._look_ahead)
         self._packer = Packer(system, _COMPONENT)
         self._due_s: dict[str, float] = {}
         self._udp: asyncio.DatagramTransport | None = None
@@ -101,6 +107,7 @@ class MavlinkServer:
         self._ticking: asyncio.Task[None] | None = None
         self._connections: set[asyncio.Task[None]] = set()
         self._malformed = 0
+        self._looks_ahead = False
         #: Where it listens; None before `start`.
         self.port: int | None = None
 
@@ -164,6 +171,27 @@ class MavlinkServer:
 
     # Sending.
 
+    @property
+    def _is_cut_off(self) -> bool:
+        return self.pilot.mishaps.at(MishapKind.LINK_LOSS, self.pilot.now_s) is not None
+
+    def _look_ahead(self) -> None:
+        """Have the link get lost in time that is held, too: its failsafes would rest for good otherwise."""
+        lost_s = self.pilot.mishaps.next_s(MishapKind.LINK_LOSS, self.pilot.now_s)
+        if lost_s < math.inf and not self._looks_ahead:
+            self._looks_ahead = True
+            self.timeline.at(lost_s, self._lose_link)
+
+    def _lose_link(self) -> None:
+        if self.timeline.is_stepped:
+            self.pilot.lose_link()
+
+    def _tell_fresh(self, reply: Reply) -> None:
+        """Tell one who holds time what has come about since, in messages no older than the report that follows."""
+        for name in FRESH:
+            if name in self.teller.rates_hz:
+                reply(self.teller.make(name))
+
     def _say(self, severity: int, text: str) -> None:
         self._tell_all(self._dialect.MAVLink_statustext_message(severity, text.encode()[:50]))
 
@@ -174,6 +202,8 @@ class MavlinkServer:
                 self._send(key, peer, data)
 
     def _send(self, key: Any, peer: "_Peer", data: bytes) -> None:
+        if self._is_cut_off:
+            return
         if peer.writer is not None:
             if peer.writer.transport.get_write_buffer_size() < _MOST_UNSENT:
                 peer.writer.write(data)
@@ -196,6 +226,8 @@ class MavlinkServer:
 
     def take(self, key: Any, data: bytes) -> None:
         """Take in bytes of somebody."""
+        if self._is_cut_off:
+            return
         peer = self._peers.get(key)
         if peer is None:
             if len(self._peers) >= _MOST_PEERS:

@@ -16,10 +16,19 @@ class Steps:
     Args:
         pilot: Whose time it is.
         dialect: The module of messages.
+        tell: Tells all that whoever asks is to know beside the report, which comes last.
+        on_hold: Called when time is held.
     """
 
-    def __init__(self, pilot: Pilot, dialect: Any) -> None:
-        self._pilot, self._dialect = pilot, dialect
+    def __init__(
+        self,
+        pilot: Pilot,
+        dialect: Any,
+        *,
+        tell: Callable[[Callable[[Any], None]], None],
+        on_hold: Callable[[], None],
+    ) -> None:
+        self._pilot, self._dialect, self._tell, self._on_hold = pilot, dialect, tell, on_hold
         #: The last request, and its answer when it is there: a request that comes again is not obeyed again.
         self._last: tuple[object, int] | None = None
         self._answer: Any = None
@@ -41,6 +50,7 @@ class Steps:
             made = self._dialect.MAVLink_tunnel_message(0, 0, ANSWER_TYPE, len(packed), packed)
             if self._last == key:
                 self._answer = made
+            self._tell(reply)
             reply(made)
 
         passing = self._obey(request)
@@ -53,6 +63,7 @@ class Steps:
         pilot, timeline = self._pilot, self._pilot.timeline
         if request.ask is Ask.HOLD:
             timeline.hold()
+            self._on_hold()
         elif request.ask is Ask.RELEASE:
             timeline.let_go()
         elif request.ask is Ask.LOOK:

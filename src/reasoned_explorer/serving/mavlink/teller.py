@@ -7,9 +7,12 @@ from typing import Any
 from reasoned_explorer.geometry import GeoOrigin, normalise_bearing_rad
 from reasoned_explorer.serving.airsim.flight import State
 from reasoned_explorer.serving.mavlink.pilot import Pilot
+from reasoned_explorer.simulation.mishaps import MishapKind
 from reasoned_explorer.vehicles.airsim.conventions import HomeFrame
 from reasoned_explorer.vehicles.mavlink.flavours import ARDUCOPTER
 
+#: What the filter says of itself: ArduPilot's message and PX4's.
+FILTERS = ("EKF_STATUS_REPORT", "ESTIMATOR_STATUS")
 #: How often each message is sent until somebody asks otherwise, times a second; those that are not here, when asked.
 RATES_HZ = {
     "HEARTBEAT": 1.0,
@@ -24,6 +27,8 @@ RATES_HZ = {
     "HOME_POSITION": 0.5,
     "EXTENDED_SYS_STATE": 1.0,
 }
+#: What whoever holds time is told with each report, where it stands; those with the time since the start come first.
+FRESH = ("ATTITUDE", "LOCAL_POSITION_NED", "GLOBAL_POSITION_INT", "GPS_RAW_INT", "SYS_STATUS", *FILTERS)
 #: The height of the ground above the sea, millimetres; worlds are flat.
 GROUND_MM = 122_000
 #: A world that lies nowhere is at AirSim's own origin.
@@ -36,12 +41,18 @@ _MAVLINK_VERSION = 3
 _SENSORS = 0x1 | 0x2 | 0x4 | 0x8 | 0x20 | 0x200_0000 | 0x1000_0000
 #: Attitude, velocities and positions are good, heights above the ground too.
 _FILTER_FLAGS = 0b11_1111
-#: What is spoken: floats for parameters, whole numbers for places, setpoints local and global, MAVLink 2.
-_CAPABILITIES = 0x2 | 0x8 | 0x80 | 0x100 | 0x2000
+#: What is spoken: whole numbers for places, setpoints local and global, MAVLink 2; and how parameters travel, which is
+#: as bytes in the place of a float's (PX4) or as floats.
+_CAPABILITIES, _AS_BYTES, _AS_FLOATS = 0x8 | 0x80 | 0x100 | 0x2000, 0x10, 0x2
 _VERSIONS = {True: 0x0405_06FF, False: 0x010E_00FF}
 _FIXES = {"single": 3, "rtk-float": 5}
 _RTK_FIXED = 6
 _BATTERY_GONE = 65535
+_NO_FIX, _UNKNOWN = 1, 65535
+#: So long the filter goes on without satellites, seconds; then it says that it knows no position.
+_ALONE_S = 5.0
+#: The bits of the horizontal positions, and the one that says that it assumes to stand.
+_PLACE_FLAGS, _ASSUMES_TO_STAND = 0b1_1000, 0b1000_0000
 
 
 class Teller:
@@ -60,7 +71,7 @@ class Teller:
         origin = pilot.drone.atlas.world.origin
         self._shift_m = (0.0, 0.0) if origin is not None else (start.x_m, start.y_m)
         self._origin = origin or _NOWHERE
-        filter_name = "ESTIMATOR_STATUS" if pilot.flavour.is_px4 else "EKF_STATUS_REPORT"
+        filter_name = FILTERS[pilot.flavour.is_px4]
         self.rates_hz = {**RATES_HZ, filter_name: 1.0}
         self._makers: dict[str, Callable[[State], Any]] = {
             "HEARTBEAT": self._heartbeat,
@@ -98,6 +109,16 @@ class Teller:
         return round(lat_deg * 1e7), round(lon_deg * 1e7)
 
     @property
+    def _silent_s(self) -> float:
+        """For how long the satellites have been silent."""
+        return self._pilot.mishaps.silent_s(MishapKind.POSITION_SILENCE, self._pilot.now_s)
+
+    @property
+    def _flags(self) -> int:
+        """What the filter says of itself."""
+        return _FILTER_FLAGS if self._silent_s <= _ALONE_S else (_FILTER_FLAGS & ~_PLACE_FLAGS) | _ASSUMES_TO_STAND
+
+    @property
     def _boot_ms(self) -> int:
         return round(self._pilot.now_s * 1000.0) % 2**32
 
@@ -122,6 +143,9 @@ class Teller:
         return self._dialect.MAVLink_system_time_message(0, self._boot_ms)
 
     def _gps(self, here: State) -> Any:
+        if self._silent_s > 0.0:
+            nowhere = self._dialect.MAVLink_gps_raw_int_message
+            return nowhere(self._boot_us, _NO_FIX, 0, 0, 0, _UNKNOWN, _UNKNOWN, _UNKNOWN, _UNKNOWN, 0)
         lat, lon = self._geo(here.x_m, here.y_m)
         speed = min(65534, round(100.0 * math.hypot(here.vx_mps, here.vy_mps)))
         course = round(math.degrees(math.atan2(here.vx_mps, here.vy_mps)) * 100.0) % 36000
@@ -175,17 +199,18 @@ class Teller:
         return self._dialect.MAVLink_extended_sys_state_message(0, 1 if self._pilot.is_landed else 2)
 
     def _filter(self, _: State) -> Any:
-        return self._dialect.MAVLink_ekf_status_report_message(_FILTER_FLAGS, 0.05, 0.05, 0.05, 0.05, 0.0)
+        return self._dialect.MAVLink_ekf_status_report_message(self._flags, 0.05, 0.05, 0.05, 0.05, 0.0)
 
     def _estimator(self, _: State) -> Any:
         ratios = (0.05,) * 6
-        return self._dialect.MAVLink_estimator_status_message(self._boot_us, _FILTER_FLAGS, *ratios, 0.1, 0.1)
+        return self._dialect.MAVLink_estimator_status_message(self._boot_us, self._flags, *ratios, 0.1, 0.1)
 
     def _version(self, _: State) -> Any:
         flown = _VERSIONS[self._pilot.flavour.name == ARDUCOPTER.name]
         nothing = [0] * 8
         kind = self._dialect.MAVLink_autopilot_version_message
-        return kind(_CAPABILITIES, flown, 0, 0, 0, nothing, nothing, nothing, 0, 0, 0)
+        spoken = _CAPABILITIES | (_AS_BYTES if self._pilot.flavour.is_px4 else _AS_FLOATS)
+        return kind(spoken, flown, 0, 0, 0, nothing, nothing, nothing, 0, 0, 0)
 
     def _charge(self) -> tuple[int, int]:
         share = self._pilot.battery

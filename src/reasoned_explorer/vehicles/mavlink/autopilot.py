@@ -15,7 +15,7 @@ from reasoned_explorer.vehicles.mavlink.dialect import dialect
 from reasoned_explorer.vehicles.mavlink.flavours import GCS_TYPE, NO_AUTOPILOT, Flavour
 from reasoned_explorer.vehicles.mavlink.link import MavLink
 from reasoned_explorer.vehicles.mavlink.lockstep import ANSWER_TYPE, REQUEST_TYPE, Ask, Report, Request
-from reasoned_explorer.vehicles.mavlink.setpoints import Setpoint
+from reasoned_explorer.vehicles.mavlink.setpoints import Setpoint, standing
 from reasoned_explorer.vehicles.mavlink.settings import DriverSettings
 from reasoned_explorer.vehicles.mavlink.telemetry import Heartbeat, Telemetry
 
@@ -35,9 +35,11 @@ _MAV_RESULTS = {
 _ACCEPTED, _IN_PROGRESS = 0, 5
 _ARM, _SET_MODE, _MESSAGE_INTERVAL = 400, 176, 511
 _CUSTOM_MODE = 1
+#: How long it may take until anything is heard of an autopilot that is asked for positions all the time, seconds.
+_HEAR_S = 1.0
 #: Messages asked for at the rate of positions, and once a second, by their numbers.
-_OFTEN = (30, 32, 33)
-_SELDOM = (1, 24, 147, 193, 230, 245)
+_OFTEN = (24, 30, 32, 33)
+_SELDOM = (1, 147, 193, 230, 245)
 _REAL32 = 9
 
 
@@ -60,6 +62,8 @@ class Autopilot:
         self._values: dict[str, asyncio.Future[float]] = {}
         self._steps: dict[int, asyncio.Future[Report]] = {}
         self._step_count = 0
+        #: Whether a simulator that can be held did not answer: then it is not asked as patiently the next time.
+        self._is_deaf = False
         self._setpoint: Setpoint | None = None
         self._modes: frozenset[str] | None = None
         #: Why the autopilot does not listen to this program any more; empty while it does.
@@ -135,10 +139,25 @@ class Autopilot:
         heard = self.telemetry.heartbeat
         if self.link.broken:
             return f"the link to {self.link.address} is lost: {self.link.broken}"
-        silent_s = math.inf if heard is None else self._now_s() - heard.at_s
+        silent_s = math.inf if heard is None else self.now_s() - heard.at_s
         if silent_s > self.settings.lost_s:
             return f"the link to {self.link.address} is lost: no heartbeat for {silent_s:.0f} s"
         return ""
+
+    @property
+    def silent_s(self) -> float:
+        """For how long nothing has been heard, seconds."""
+        return max(0.0, self.now_s() - self.telemetry.heard_at_s)
+
+    async def hear_again(self) -> None:
+        """Wait until anything is heard.
+
+        Raises:
+            PartError: If nothing is for a second.
+        """
+        before_s = self.telemetry.heard_at_s
+        why_not = f"nothing is heard on {self.link.address}"
+        await self.wait_for(lambda: self.telemetry.heard_at_s > before_s, _HEAR_S, why_not)
 
     async def take_control(self) -> None:
         """Take the guided mode and switch the motors on, or wait for a person who does.
@@ -192,10 +211,10 @@ class Autopilot:
         self._send_setpoint()
 
     def here(self) -> Setpoint:
-        """Return the setpoint that stays: PX4 holds a place, ArduPilot a velocity of nothing."""
+        """Return the setpoint that stays: PX4 holds a place, ArduPilot is told to stand."""
         local = self.telemetry.local
         if not self.flavour.is_px4 or local is None:
-            return Setpoint()
+            return standing(flies=self.flavour.flies)
         return Setpoint(local.north_m, local.east_m, local.down_m)
 
     async def command(self, number: int, *parameters: float) -> None:
@@ -251,15 +270,18 @@ class Autopilot:
         payload = Request(ask, number, seconds, until_idle).pack()
         size = len(payload)
         try:
-            for _ in range(_TRIES):
+            for _ in range(1 if self._is_deaf else _TRIES):
                 self.link.send(self._dialect.MAVLink_tunnel_message(*self._to, REQUEST_TYPE, size, payload))
                 try:
                     async with asyncio.timeout(self.settings.reply_s):
-                        return await asyncio.shield(answer)
+                        report: Report = await asyncio.shield(answer)
                 except TimeoutError:
                     continue
+                self._is_deaf = False
+                return report
         finally:
             del self._steps[number]
+        self._is_deaf = True
         raise PartError(PART, "no link to a simulator that can be held: it does not answer")
 
     async def wait_for(self, holds: Callable[[], object], limit_s: float, why_not: str) -> None:
@@ -268,9 +290,9 @@ class Autopilot:
         Raises:
             PartError: If it does not come to, with the reason that is given.
         """
-        until_s = self._now_s() + limit_s
+        until_s = self.now_s() + limit_s
         while not holds():
-            if self._now_s() > until_s:
+            if self.now_s() > until_s:
                 texts = "".join(f"; it says: {text}" for text in self.telemetry.texts[-1:])
                 raise PartError(PART, f"{why_not} within {limit_s:g} s{texts}")
             if self.link.broken:
@@ -281,7 +303,8 @@ class Autopilot:
     def _to(self) -> tuple[int, int]:
         return self._target or (0, 0)
 
-    def _now_s(self) -> float:
+    def now_s(self) -> float:
+        """Return the time by which it is judged whether anybody is heard, seconds; safe from any thread."""
         return 0.0 if self._loop is None else self._loop.time()
 
     def _mode(self) -> str:
@@ -295,7 +318,7 @@ class Autopilot:
         setpoint = self._setpoint
         if setpoint is None or self.taken or self._target is None or self.lost():
             return
-        boot_ms = round(self._now_s() * 1000.0) % 2**32
+        boot_ms = round(self.now_s() * 1000.0) % 2**32
         origin = self.settings.origin
         self.link.send(setpoint.message(self._dialect, self._to, boot_ms=boot_ms, origin=origin))
 
@@ -338,7 +361,7 @@ class Autopilot:
             return
         if kind == "HEARTBEAT":
             self.link.choose_sender()
-        self.telemetry.take(message, self._now_s())
+        self.telemetry.take(message, self.now_s())
         if kind == "HEARTBEAT" and self.telemetry.heartbeat is not None:
             self._see_who_steers(self.telemetry.heartbeat)
         elif kind == "COMMAND_ACK":

@@ -30,6 +30,7 @@ class Moment:
         believed: Where the autopilot's filter takes it to be.
         true: Where it really is, as far as anybody knows.
         speed_mps: Of its body.
+        yaw_rate_radps: Positive clockwise; None where nobody says.
         is_busy: Whether it is on its way to somewhere; None where nobody says.
         hits: How often it has run into something that was told.
         hit: What that was.
@@ -39,6 +40,7 @@ class Moment:
     believed: Pose
     true: Pose
     speed_mps: float
+    yaw_rate_radps: float | None = None
     is_busy: bool | None = None
     hits: int = 0
     hit: str = ""
@@ -46,6 +48,9 @@ class Moment:
 
 class Pace(Protocol):
     """How time passes for a driver."""
+
+    #: Whether the autopilot's time passes by itself.
+    is_lived: bool
 
     async def talk(self, call: Callable[[], Coroutine[Any, Any, T]]) -> T:
         """Talk to the autopilot, in the process's live loop, and return what comes of it."""
@@ -65,7 +70,7 @@ class Pace(Protocol):
     async def wait(self, seconds: float) -> None:
         """Let some seconds pass."""
 
-    async def moment(self) -> Moment:
+    def moment(self) -> Moment:
         """Return where the vehicle is."""
 
     async def charge(self, elapsed_s: float) -> None:
@@ -80,6 +85,8 @@ class LivedPace:
         autopilot: Whom to talk to.
         home: Where positions on the wire count from.
     """
+
+    is_lived = True
 
     def __init__(self, clock: Clock, autopilot: Autopilot, home: HomeFrame) -> None:
         self._clock, self._autopilot, self._home = clock, autopilot, home
@@ -106,7 +113,7 @@ class LivedPace:
         """Wait."""
         await self._clock.act(seconds)
 
-    async def moment(self) -> Moment:
+    def moment(self) -> Moment:
         """Return what the autopilot last told."""
         told, origin, home = self._autopilot.telemetry, self._autopilot.settings.origin, self._home
         yaw_rad = told.yaw_rad or 0.0
@@ -121,7 +128,7 @@ class LivedPace:
         else:
             raise AssertionError
         believed = Pose(*place, yaw_rad)
-        return Moment(self._clock.now_s(), believed, believed, speed)
+        return Moment(self._clock.now_s(), believed, believed, speed, told.yaw_rate_radps)
 
     async def charge(self, elapsed_s: float) -> None:
         """Nothing: it was lived through."""
@@ -138,6 +145,8 @@ class SteppedPace:
         autopilot: Whom to talk to.
         home: Where positions on the wire count from; reports are in the world's frame already.
     """
+
+    is_lived = False
 
     def __init__(self, clock: Clock, autopilot: Autopilot, home: HomeFrame) -> None:
         self._clock, self._autopilot, self._home = clock, autopilot, home
@@ -168,7 +177,7 @@ class SteppedPace:
         if idle_s > 0.0:
             await self._ask(Ask.STEP, idle_s)
         await self._ask(Ask.LOOK if looks else Ask.STATE)
-        self._known_s = self._clock.now_s()
+        self._known_s = max(self._known_s, self._clock.now_s())
 
     async def until_idle(self, seconds: float) -> None:
         """Let the simulator's time go on, at most to the end of what moves."""
@@ -178,17 +187,19 @@ class SteppedPace:
         """Let the simulator's time go on."""
         await self._ask(Ask.STEP, seconds)
 
-    async def moment(self) -> Moment:
+    def moment(self) -> Moment:
         """Return what the simulator last reported."""
         told = self._report
         if told is None:
             raise AssertionError
-        return Moment(told.t_s, told.believed, told.true, told.speed_mps, told.is_busy, told.hits, told.hit)
+        rate = told.yaw_rate_radps
+        return Moment(told.t_s, told.believed, told.true, told.speed_mps, rate, told.is_busy, told.hits, told.hit)
 
     async def charge(self, elapsed_s: float) -> None:
         """Have the mission's clock jump."""
+        # Whoever cancels this finds the simulator ahead: what it has lived through is not to pass for it again.
+        self._known_s = self._clock.now_s() + elapsed_s
         await self._clock.act(elapsed_s)
-        self._known_s = self._clock.now_s()
 
     async def _ask(self, ask: Ask, seconds: float = 0.0, *, until_idle: bool = False) -> None:
         self._report = await self.talk(lambda: self._autopilot.step(ask, seconds, until_idle=until_idle))

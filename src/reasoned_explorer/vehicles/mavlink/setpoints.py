@@ -24,12 +24,14 @@ class Setpoint:
         east_m: Likewise.
         down_m: Likewise.
         yaw_rad: The heading to take, or NaN for any.
+        by_turn_rate: Whether one that is to stand is told a turn rate of nothing rather than a velocity of nothing.
     """
 
     north_m: float = math.nan
     east_m: float = math.nan
     down_m: float = math.nan
     yaw_rad: float = math.nan
+    by_turn_rate: bool = False
 
     @property
     def mask(self) -> int:
@@ -39,8 +41,11 @@ class Setpoint:
             mask |= NO_YAW
         if not math.isnan(self.north_m):
             return mask | NO_VELOCITY
-        # A heading alone turns in place; a velocity of nothing stands.
-        return mask | NO_POSITION if math.isnan(self.yaw_rad) else mask | NO_POSITION | NO_VELOCITY
+        if not math.isnan(self.yaw_rad):
+            return mask | NO_POSITION | NO_VELOCITY  # turns in place
+        if self.by_turn_rate:
+            return (mask & ~NO_YAW_RATE) | NO_POSITION | NO_VELOCITY
+        return mask | NO_POSITION
 
     def message(self, dialect: Any, to: tuple[int, int], *, boot_ms: int, origin: GeoOrigin | None) -> Any:
         """Return the message that says so.
@@ -61,6 +66,18 @@ class Setpoint:
         earth = round(lat_deg * 1e7), round(lon_deg * 1e7), -place[2]
         frame = GLOBAL_RELATIVE_ALT
         return dialect.MAVLink_set_position_target_global_int_message(boot_ms, *to, frame, self.mask, *earth, *rest)
+
+
+def standing(*, flies: bool) -> Setpoint:
+    """Return what has a machine of ArduPilot stand.
+
+    A drone is told a velocity of nothing. A rover takes the direction of a velocity for the heading to turn to, and
+    nothing's direction is north: it is told not to turn, which has it stand, too.
+
+    Args:
+        flies: Whether it is a drone.
+    """
+    return Setpoint(by_turn_rate=not flies)
 
 
 def _wrapped(yaw_rad: float) -> float:

@@ -24,6 +24,7 @@ class DriverSettings:
         stream_hz: How often setpoints are sent; None for what the autopilot needs (10 for PX4, else 1).
         takes_speed: Whether PX4's parameter for the greatest speed is set while the driver steers.
         lost_s: So many seconds without a heartbeat the link is lost.
+        worst_error_m: Where the autopilot's receiver says that it errs by more, a guard takes the position for poor.
         reply_s: How long an answer may take, seconds; it is asked for three times.
         ready_s: How long to wait for an autopilot, its position, and for motors that a person switches on.
         settle_s: How long to stand still after a leg; None for what the vehicle's profile says.
@@ -47,6 +48,7 @@ class DriverSettings:
     stream_hz: float | None = None
     takes_speed: bool = True
     lost_s: float = 5.0
+    worst_error_m: float = 5.0
     reply_s: float = 2.0
     ready_s: float = 60.0
     settle_s: float | None = None
@@ -60,6 +62,7 @@ class DriverSettings:
         ranges = {
             "rate_hz": (0.5, 100.0),
             "lost_s": (1.5, 600.0),
+            "worst_error_m": (0.01, 1000.0),
             "reply_s": (0.05, 600.0),
             "ready_s": (0.1, 3600.0),
             "arrival_m": (0.01, 100.0),

@@ -17,6 +17,10 @@ _NEEDED_FLAGS, _NO_POSITION = 0b1_0011, 0b1000_0000
 _NO_VALUE_16, _NO_VALUE_32 = 0xFFFF, 0xFFFFFFFF
 #: EXTENDED_SYS_STATE.
 _ON_GROUND = 1
+#: From which GPS_FIX_TYPE on there is a fix.
+_2D_FIX = 2
+#: Messages that tell the autopilot's own time.
+_TIMED = frozenset({"ATTITUDE", "LOCAL_POSITION_NED", "GLOBAL_POSITION_INT"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +110,15 @@ class Telemetry:
         self.globe: GlobalPosition | None = None
         self.yaw_rad: float | None = None
         self.yaw_at_s = -math.inf
+        self.yaw_rate_radps: float | None = None
+        #: When anything was last heard, seconds of the loop's time.
+        self.heard_at_s = -math.inf
+        #: The autopilot's own time, seconds since it was switched on, and when that was heard.
+        self.boot_s, self.boot_at_s = 0.0, -math.inf
+        #: When it last knew its place, and last had a fix, on its own time; None before it first did.
+        self.place_boot_s: float | None = None
+        self.fix_boot_s: float | None = None
+        self._fix_us = -1
         self.battery = Battery(None, None)
         self.position = PositionQuality()
         self.is_landed: bool | None = None
@@ -115,7 +128,11 @@ class Telemetry:
 
     def take(self, message: Any, now_s: float) -> None:
         """Take in a message."""
-        reader = _READERS.get(message.get_type())
+        kind = message.get_type()
+        self.heard_at_s = now_s
+        if kind in _TIMED:
+            self.boot_s, self.boot_at_s = message.time_boot_ms / 1000.0, now_s
+        reader = _READERS.get(kind)
         if reader is not None:
             reader(self, message, now_s)
 
@@ -127,16 +144,19 @@ class Telemetry:
         numbers = message.x, message.y, message.z, message.vx, message.vy, message.vz
         if is_finite(*numbers):
             self.local = Kinematics(now_s, *numbers)
+            self.place_boot_s = self.boot_s
 
     def _globe(self, message: Any, now_s: float) -> None:
         lat_deg, lon_deg = message.lat / 1e7, message.lon / 1e7
         if (message.lat, message.lon) != (0, 0) and abs(lat_deg) <= 90.0 and abs(lon_deg) <= 180.0:
             speeds = message.vx / 100.0, message.vy / 100.0
             self.globe = GlobalPosition(now_s, lat_deg, lon_deg, message.relative_alt / 1000.0, *speeds)
+            self.place_boot_s = self.boot_s
 
     def _attitude(self, message: Any, now_s: float) -> None:
         if is_finite(message.yaw):
             self.yaw_rad, self.yaw_at_s = message.yaw % (2.0 * math.pi), now_s
+            self.yaw_rate_radps = message.yawspeed if is_finite(message.yawspeed) else None
 
     def _power(self, message: Any, _: float) -> None:
         millivolts = message.voltage_battery
@@ -154,6 +174,9 @@ class Telemetry:
         satellites = None if message.satellites_visible == 255 else message.satellites_visible
         error_m = None if message.h_acc in {0, _NO_VALUE_32} else message.h_acc / 1000.0
         self.position = PositionQuality(message.fix_type, satellites, error_m, self.position.filter_is_good)
+        # The same fix told again is no newer; who tells no time tells it anew.
+        if message.fix_type >= _2D_FIX and (message.time_usec != self._fix_us or message.time_usec == 0):
+            self._fix_us, self.fix_boot_s = message.time_usec, self.boot_s
 
     def _filter(self, message: Any, _: float) -> None:
         is_good = message.flags & _NEEDED_FLAGS == _NEEDED_FLAGS and not message.flags & _NO_POSITION

@@ -3,7 +3,7 @@
 import asyncio
 import contextlib
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from reasoned_explorer.clock import Clock
@@ -16,8 +16,9 @@ from reasoned_explorer.vehicles.looking import Content, turning_order
 from reasoned_explorer.vehicles.mavlink.address import Address
 from reasoned_explorer.vehicles.mavlink.autopilot import PART, Autopilot
 from reasoned_explorer.vehicles.mavlink.endings import crash_told, ending
-from reasoned_explorer.vehicles.mavlink.pace import Moment, Pace, pace_of
-from reasoned_explorer.vehicles.mavlink.setpoints import Setpoint
+from reasoned_explorer.vehicles.mavlink.manoeuvres import Manoeuvres
+from reasoned_explorer.vehicles.mavlink.news import news
+from reasoned_explorer.vehicles.mavlink.pace import Pace, pace_of
 from reasoned_explorer.vehicles.mavlink.settings import DriverSettings
 from reasoned_explorer.vehicles.mavlink.speed import Speed
 from reasoned_explorer.vehicles.mavlink.telemetry import Battery, PositionQuality
@@ -26,11 +27,6 @@ from reasoned_explorer.vehicles.profile import VehicleProfile
 from reasoned_explorer.vehicles.safety.telemetry import Telemetry
 from reasoned_explorer.vehicles.vehicle import Vehicle
 
-_TAKEOFF = 22
-#: How long rising, landing and turning may take, seconds.
-_RISE_S, _LAND_S, _TURN_S = 60.0, 120.0, 30.0
-#: So near its height it has risen; so near the ground it stands on it, where nobody says, metres.
-_HEIGHT_M, _GROUND_M = 0.2, 0.3
 #: A leg may take so many times as long as it should, and some seconds.
 _PATIENCE, _PATIENCE_S = 3.0, 10.0
 
@@ -70,7 +66,9 @@ class MavlinkVehicle(Vehicle):
         self._clock, self._camera, self._content = clock, camera, content
         self.autopilot = Autopilot(Address.read(address), self.settings)
         self._pace: Pace = pace_of(clock, self.autopilot, self._frame)
-        self._moment = Moment(0.0, start, start, 0.0)
+        self._body = Manoeuvres(
+            self.autopilot, self._pace, self._frame, profile=profile, settings=self.settings, start=start
+        )
         self._legs = self._looks = 0
         self._is_connected = self._is_up = self._is_paced = False
         self._speed = Speed(self.autopilot)
@@ -81,8 +79,11 @@ class MavlinkVehicle(Vehicle):
 
     @property
     def pose(self) -> Pose:
-        """Where the autopilot believed the vehicle to be when it last moved or looked."""
-        return self._moment.believed
+        """Where the autopilot believed it to be when it last moved or looked; a rover's height is its camera's."""
+        return self._at_height(self._body.pose)
+
+    def _at_height(self, pose: Pose) -> Pose:
+        return pose if self.profile.flies else replace(pose, z_m=self.profile.camera_height_m)
 
     @property
     def battery(self) -> Battery:
@@ -90,8 +91,41 @@ class MavlinkVehicle(Vehicle):
         return self.autopilot.telemetry.battery
 
     def telemetry(self) -> Telemetry:
-        """Return what a guard is told; a lost link and a poor position are seen to by driver and autopilot."""
-        return Telemetry(self.pose, t_s=self._moment.t_s, battery=self.battery.remaining)
+        """Return what a guard is told: what is known now, also on the way."""
+        moment = self._pace.moment() if self._has_moment else self._body.moment
+        told = news(self.autopilot, moment, lived=self._pace.is_lived)
+        return replace(told, pose=self._at_height(told.pose))
+
+    @property
+    def _has_moment(self) -> bool:
+        if self._pace.is_lived:
+            return self._is_connected and self.autopilot.telemetry.place_boot_s is not None
+        return self._is_paced
+
+    async def refresh(self) -> None:
+        """Find out where the vehicle is, and that it is heard.
+
+        Raises:
+            PartError: If it is not.
+        """
+        if not self._is_connected:
+            raise PartError(PART, "the vehicle is not connected")
+        if lost := self.autopilot.lost():
+            raise PartError(PART, lost)
+        if self._pace.is_lived:
+            await self._pace.talk(self.autopilot.hear_again)
+        await self._catch_up()
+
+    async def halt(self) -> None:
+        """Stand, whatever it was doing. What somebody else has taken over is left to them.
+
+        Raises:
+            PartError: If the vehicle is not heard afterwards: what it does is then up to its own failsafe.
+        """
+        if self._is_up and not self.autopilot.taken:
+            self._body.catch()
+            await self._body.stand()
+            await self.refresh()
 
     @property
     def position_quality(self) -> PositionQuality:
@@ -146,12 +180,19 @@ class MavlinkVehicle(Vehicle):
             is_what = "flies" if self.autopilot.flavour.flies else "drives"
             raise PartError(PART, f"the autopilot's machine {is_what}, and {self.profile.name} does not")
         await self._begin_pace()
-        self._moment = await self._pace.moment()
+        self._body.catch()
         self._is_up = True
         await self._pace.talk(self.autopilot.take_control)
         await self._pace.talk(lambda: self._speed.take(self.profile.speed_mps))
         if self.profile.flies:
-            await self._rise()
+            await self._body.rise()
+
+    async def _catch_up(self, *, looks: bool = False) -> None:
+        """Have as much time passed for the autopilot as on the mission's clock, and find out where the vehicle is."""
+        if not self._is_paced:
+            await self._begin_pace()
+        await self._pace.catch_up(looks=looks)
+        self._body.catch()
 
     async def _begin_pace(self) -> None:
         await self._pace.begin()
@@ -171,7 +212,7 @@ class MavlinkVehicle(Vehicle):
         try:
             if was_up and self.autopilot.is_armed and not self.autopilot.taken:
                 self.autopilot.check()
-                await self._leave_safe()
+                await self._body.leave_safe()
             if was_up:
                 await self._pace.talk(self._speed.give_back)
             if self._is_paced:
@@ -179,39 +220,6 @@ class MavlinkVehicle(Vehicle):
                 await self._pace.end()
         finally:
             await self._pace.talk(self.autopilot.close)
-
-    async def _leave_safe(self) -> None:
-        autopilot = self.autopilot
-        await self._aim(self._here())
-        if not self.profile.flies:
-            await self._pace.talk(autopilot.disarm)
-        elif self.settings.lands:
-            autopilot.allow("LAND")
-            await self._pace.talk(lambda: autopilot.set_mode("LAND"))
-            await self._until(lambda: self._stands_on_ground() or not autopilot.is_armed, _LAND_S, "land")
-            await self._pace.talk(autopilot.disarm)
-        elif autopilot.flavour.is_px4:
-            # Its guided mode ends with the setpoints.
-            hold = autopilot.flavour.hold
-            autopilot.allow(hold)
-            await self._pace.talk(lambda: autopilot.set_mode(hold))
-
-    async def _rise(self) -> None:
-        height_m, autopilot = self.profile.camera_height_m, self.autopilot
-        if self._stands_on_ground() and not autopilot.flavour.is_px4:
-            above_home_m = height_m - self._frame.z_m
-            await self._pace.talk(lambda: autopilot.command(_TAKEOFF, *(0.0,) * 6, above_home_m))
-        else:
-            await self._aim(self._setpoint(replace(self.pose, z_m=height_m), turns=False))
-        await self._until(
-            lambda: abs(self.pose.z_m - height_m) < _HEIGHT_M, _RISE_S, f"reach a height of {height_m:g} m"
-        )
-        await self._aim(self._here())
-
-    def _stands_on_ground(self) -> bool:
-        if self._moment.is_busy is None and self.autopilot.telemetry.is_landed is not None:
-            return self.autopilot.telemetry.is_landed
-        return self.pose.z_m - self._frame.z_m < _GROUND_M and not self._moment.is_busy
 
     # Looking.
 
@@ -229,26 +237,23 @@ class MavlinkVehicle(Vehicle):
             raise SettingsError("look", faults)
         if self._is_up or not self._is_connected:
             self._check()
-        if not self._is_paced:
-            await self._begin_pace()
-        await self._pace.catch_up(looks=True)
-        self._moment = await self._pace.moment()
+        await self._catch_up(looks=True)
         looks, self._looks = self._looks, self._looks + 1
         taken: dict[int, View] = {}
         for index in self._order(headings_rad):
             heading_rad = normalise_heading_rad(headings_rad[index])
             if self.profile.turns_to_look and self._is_up:
-                await self._turn_to(heading_rad)
+                await self._body.turn_to(heading_rad)
             if self.profile.turns_to_look:
                 heading_rad = self.pose.heading_rad
             taken[index] = await self._view((self._legs, looks, index), heading_rad)
         if self.profile.look_s > 0.0:
             await self._pace.wait(self.profile.look_s)
-            await self._see()
+            await self._body.see()
         return [taken[index] for index in range(len(headings_rad))]
 
     async def _view(self, key: tuple[int, int, int], heading_rad: float) -> View:
-        believed, true, source = self.pose, self._moment.true, self._camera
+        believed, true, source = self.pose, self._body.moment.true, self._camera
         bearing_rad = bearing_between_rad(believed.heading_rad, heading_rad)
         image = None if source is None else await self._pace.talk(lambda: source.take(bearing_rad))
         height_m = self.profile.camera_height_m
@@ -278,18 +283,20 @@ class MavlinkVehicle(Vehicle):
             raise SettingsError("go_to", [Fault(f"target {target}", "finite coordinates and heading")])
         self._check()
         self._legs, self._looks = self._legs + 1, 0
-        await self._pace.catch_up()
-        self._moment = await self._pace.moment()
-        aim = replace(target, z_m=self.profile.camera_height_m if self.profile.flies else self.pose.z_m)
+        await self._catch_up()
+        aim = replace(target, z_m=self.profile.camera_height_m if self.profile.flies else self._body.pose.z_m)
         watch = LegWatch(
-            aim, self.settings, max(self.profile.settle_s, self._settle_s), self._clock.now_s(), self._moment
+            aim, self.settings, max(self.profile.settle_s, self._settle_s), self._clock.now_s(), self._body.moment
         )
-        watch.see(self._moment, self._moment.true)
+        self._note(watch)
         try:
             outcome, detail = await self._travel(aim, watch)
         except asyncio.CancelledError:
+            # As it is now, not as when it was last looked after: a place that is held must be where it is.
+            self._body.catch()
+            self._note(watch)
             with contextlib.suppress(PartError):
-                await asyncio.shield(self._aim(self._here()))
+                await asyncio.shield(self._body.stand())
             self.last_leg = watch.leg(LegOutcome.STOPPED, "cancelled")
             raise
         except PartError as error:
@@ -300,21 +307,24 @@ class MavlinkVehicle(Vehicle):
 
     async def _travel(self, aim: Pose, watch: LegWatch) -> tuple[LegOutcome, str]:
         texts = self.autopilot.telemetry.texts_seen
-        await self._aim(self._setpoint(aim, turns=self.profile.flies))
+        await self._body.go(aim, turns=self.profile.flies)
         outcome, detail = await self._follow(watch, texts)
         if self.autopilot.taken:
             return LegOutcome.STOPPED, self.autopilot.taken
-        await self._aim(self._here())
+        await self._body.stand()
         if outcome is not LegOutcome.ARRIVED:
             return outcome, detail
         if not self.profile.flies:
-            await self._turn_to(aim.heading_rad)
-            watch.see(self._moment, self._moment.true)
+            await self._body.turn_to(aim.heading_rad)
+            self._note(watch)
         if self._settle_s > 0.0:
             await self._pace.wait(self._settle_s)
-            await self._see()
-            watch.see(self._moment, self._moment.true)
+            await self._body.see()
+            self._note(watch)
         return outcome, detail
+
+    def _note(self, watch: LegWatch) -> None:
+        watch.see(self._body.moment, self._body.moment.true)
 
     async def _follow(self, watch: LegWatch, texts: int) -> tuple[LegOutcome, str]:
         """Watch a leg to its end.
@@ -324,12 +334,12 @@ class MavlinkVehicle(Vehicle):
         """
         due_s = watch.left_m / self.profile.speed_mps + 2.0 * math.pi / self.profile.turn_rate_radps
         limit_s = _PATIENCE * due_s + _PATIENCE_S + watch.settle_s
-        hits, autopilot = self._moment.hits, self.autopilot
+        hits, autopilot = self._body.moment.hits, self.autopilot
         while True:
             await self._pace.until_idle(self.settings.poll_s)
-            await self._see()
-            moment = self._moment
-            watch.see(moment, moment.true)
+            await self._body.see()
+            self._note(watch)
+            moment = self._body.moment
             if moment.hits != hits:
                 return LegOutcome.COLLISION, moment.hit
             if crash := crash_told(autopilot.telemetry, texts):
@@ -340,60 +350,6 @@ class MavlinkVehicle(Vehicle):
                 raise PartError(PART, lost)
             if ended := ending(watch, moment, limit_s=limit_s, turns_later=not self.profile.flies):
                 return ended
-
-    async def _turn_to(self, heading_rad: float) -> None:
-        """Turn in place.
-
-        Raises:
-            PartError: If it does not come about.
-        """
-        if abs(bearing_between_rad(self.pose.heading_rad, heading_rad)) <= 0.5 * self.settings.facing_rad:
-            return
-        here = self._setpoint(self.pose.facing(heading_rad), turns=True)
-        await self._aim(here if self.profile.flies else Setpoint(yaw_rad=heading_rad))
-
-        def faces() -> bool:
-            off_rad = abs(bearing_between_rad(self.pose.heading_rad, heading_rad))
-            return off_rad <= self.settings.facing_rad
-
-        await self._until(faces, _TURN_S, "turn")
-        await self._aim(self._here())
-
-    async def _until(self, holds: Callable[[], bool], limit_s: float, what: str) -> None:
-        """Let time pass until something holds, or a simulator says that the motion is over.
-
-        Raises:
-            PartError: If that does not come about, the link is lost or somebody else has taken over.
-        """
-        begun_s = self._moment.t_s
-        while True:
-            await self._pace.until_idle(self.settings.poll_s)
-            await self._see()
-            if holds() and not self._moment.is_busy:
-                return
-            self.autopilot.check()
-            if self._moment.t_s - begun_s > limit_s:
-                raise PartError(PART, f"the vehicle does not {what} within {limit_s:g} s")
-
-    async def _see(self) -> None:
-        """Find out where the vehicle is; charge the time since this was last done."""
-        before_s, self._moment = self._moment.t_s, await self._pace.moment()
-        if self._moment.t_s > before_s:
-            await self._pace.charge(self._moment.t_s - before_s)
-
-    async def _aim(self, setpoint: Setpoint) -> None:
-        async def send() -> None:
-            self.autopilot.aim(setpoint)
-
-        await self._pace.talk(send)
-
-    def _setpoint(self, pose: Pose, *, turns: bool) -> Setpoint:
-        ned_m = self._frame.ned_m(pose.x_m, pose.y_m, pose.z_m)
-        return Setpoint(*ned_m, pose.heading_rad if turns else math.nan)
-
-    def _here(self) -> Setpoint:
-        """Return the setpoint that stays: PX4 holds a place, ArduPilot a velocity of nothing."""
-        return self._setpoint(self.pose, turns=False) if self.autopilot.flavour.is_px4 else Setpoint()
 
     def _check(self) -> None:
         """See that there is somebody to command.

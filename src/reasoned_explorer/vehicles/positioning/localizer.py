@@ -58,12 +58,14 @@ class Localization:
         estimate: What the filter believes; None where it has not begun.
         verdict: Whether the machine may move by it.
         quality: Of the last fix; None before the first.
+        fix_age_s: Since the last fix that was believed; infinite before the first.
     """
 
     time_s: float
     estimate: PoseEstimate | None
     verdict: PositionVerdict
     quality: FixQuality | None
+    fix_age_s: float = math.inf
 
 
 @dataclass(slots=True)
@@ -155,7 +157,7 @@ class Localizer:
             now_s - track.imu_s,
             now_s - max(track.fixes.restarted_s, track.compass.restarted_s),
         )
-        return Localization(now_s, estimate, judge(evidence, self.settings.limits), track.quality)
+        return Localization(now_s, estimate, judge(evidence, self.settings.limits), track.quality, evidence.fix_age_s)
 
     def _apply(self, track: Track, time_s: float, measurement: Measurement) -> None:
         if isinstance(measurement, Fix) and time_s != measurement.time_s:

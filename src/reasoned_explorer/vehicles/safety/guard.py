@@ -294,7 +294,17 @@ class GuardedVehicle(Vehicle):
             self._note(found, stopped, at_s=at_s)
             self._link = found if found.cause is Cause.LINK else self._link
             return self._travelled(before, aim, in_words(found)), found
+        if leg.outcome is LegOutcome.STOPPED and (found_too := trouble()) is not None:
+            return await self._seen_first(leg, found_too), found_too
         return leg, None
+
+    async def _seen_first(self, leg: Leg, found: Finding) -> Leg:
+        """Take in that the machine's driver has stopped it, for a reason that is one of the guard's, too."""
+        at_s = self._clock.now_s()
+        heard = await self._halt()
+        self._note(found, "stopped by its driver" if heard else "left to the machine's own failsafe", at_s=at_s)
+        self._link = found if found.cause is Cause.LINK else self._link
+        return replace(leg, detail=f"{in_words(found)} ({leg.detail})")
 
     def _trouble(self, aim: Pose) -> Finding | None:
         if self.stop.pressed:

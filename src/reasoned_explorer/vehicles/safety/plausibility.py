@@ -51,7 +51,7 @@ class Plausibility:
         at_s = now_s if told.t_s is None else told.t_s
         last = self._last
         if self._trouble is not None and last is not None:
-            self._recover(last.pose, told.pose)
+            self._recover(last, told)
         elif last is not None:
             moved_m = last.pose.distance_to_m(told.pose.x_m, told.pose.y_m)
             if moved_m > self._limits.jump_m + _WANDER_MPS * max(0.0, at_s - self._last_s):
@@ -67,7 +67,7 @@ class Plausibility:
             self._last, self._last_s = told, at_s
             return None
         if self._trouble is not None:
-            self._recover(last.pose, told.pose)
+            self._recover(last, told)
             return self._trouble
         elapsed_s = at_s - self._last_s
         if elapsed_s <= 0.0:
@@ -87,7 +87,7 @@ class Plausibility:
     def _turned(self, before: Telemetry, now: Telemetry, elapsed_s: float) -> Finding | None:
         if elapsed_s > _GAP_S:
             return None
-        turned_rad = bearing_between_rad(before.pose.heading_rad, now.pose.heading_rad)
+        turned_rad = bearing_between_rad(_heading_rad(before), _heading_rad(now))
         limit_rad = self._limits.turn_off_rad
         if before.yaw_rate_radps is not None and now.yaw_rate_radps is not None:
             by_gyro_rad = 0.5 * (before.yaw_rate_radps + now.yaw_rate_radps) * elapsed_s
@@ -100,11 +100,16 @@ class Plausibility:
             return None
         return Finding(Cause.COMPASS, f"the heading turned by {57.29578 * off_rad:.0f}° {against}")
 
-    def _recover(self, believed: Pose, now: Pose) -> None:
+    def _recover(self, believed: Telemetry, now: Telemetry) -> None:
         """Believe again what is where the last believed pose was: the machine has stood since."""
-        near = believed.distance_to_m(now.x_m, now.y_m) <= self._limits.jump_m
-        turned_rad = abs(bearing_between_rad(believed.heading_rad, now.heading_rad))
+        near = believed.pose.distance_to_m(now.pose.x_m, now.pose.y_m) <= self._limits.jump_m
+        turned_rad = abs(bearing_between_rad(_heading_rad(believed), _heading_rad(now)))
         if self._trouble is None:
             return
         if near and (self._trouble.cause is Cause.POSITION or turned_rad <= self._limits.turn_off_rad):
             self._trouble = self._last = None
+
+
+def _heading_rad(told: Telemetry) -> float:
+    """Return the heading that may be led astray: the compass's own, where there is one."""
+    return told.pose.heading_rad if told.compass_rad is None else told.compass_rad

@@ -26,6 +26,7 @@ class Telemetry:
         battery: Share that is left, [0, 1].
         range_ahead_m: To what stands before it, in its heading.
         picture_age_s: Since its camera last gave a picture.
+        compass_rad: The heading by its compass alone, where its filter may refuse that; None where the pose's is all.
     """
 
     pose: Pose
@@ -38,6 +39,7 @@ class Telemetry:
     battery: float | None = None
     range_ahead_m: float | None = None
     picture_age_s: float | None = None
+    compass_rad: float | None = None
 
 
 @runtime_checkable
@@ -82,6 +84,7 @@ PLAIN = (
     "battery",
     "range_ahead_m",
     "picture_age_s",
+    "compass_rad",
 )
 
 

@@ -60,6 +60,11 @@ class Go1Robot(Robot):
         """Return the clock's time."""
         return self._now_s()
 
+    @property
+    def silent_s(self) -> float:
+        """For how long no state has come in."""
+        return self.link.state_age_s
+
     async def start(self) -> None:
         """Open the link and wait for the robot's first word."""
         await self.link.start()

@@ -86,6 +86,11 @@ class Go2Robot(Robot):
         """Return the clock's time."""
         return self._now_s()
 
+    @property
+    def silent_s(self) -> float:
+        """For how long no state has come in."""
+        return self._now_s() - self._heard_s
+
     async def start(self) -> None:
         """Join the robot's network and have it stand in balance."""
         try:

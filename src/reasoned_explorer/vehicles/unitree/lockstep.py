@@ -53,6 +53,12 @@ class LockstepGo1(Robot, asyncio.DatagramProtocol):
         self._state: HighState | None = None
         self._answer: asyncio.Future[HighState] | None = None
         self._transport: asyncio.DatagramTransport | None = None
+        self._silent_s = 0.0
+
+    @property
+    def silent_s(self) -> float:
+        """How long an answer was waited for in vain, real seconds; 0 where the last command was answered."""
+        return self._silent_s
 
     def now_s(self) -> float:
         """Return how long the robot's time has gone on since the start."""
@@ -120,11 +126,12 @@ class LockstepGo1(Robot, asyncio.DatagramProtocol):
                     self._transport.sendto(packet)
                     await asyncio.wait({self._answer}, timeout=_AGAIN_S)
         except TimeoutError:
+            self._silent_s = self._deadline_s
             fault = "a real robot is driven on the real clock" if self._number == 0 else "the link is lost"
             raise PartError(
                 self.name, f"no answer in step from {self.host}:{self.port} in {self._deadline_s:g} s: {fault}"
             ) from None
-        self._state = self._answer.result()
+        self._state, self._silent_s = self._answer.result(), 0.0
         self._number += 1
         self._moments += moments
         return self._state

@@ -133,6 +133,11 @@ class Robot(ABC):
         """Return what is really sent for a velocity."""
 
     @property
+    def silent_s(self) -> float:
+        """For how long nothing has been heard of it, seconds; safe from any thread."""
+        return 0.0
+
+    @property
     def fixes_due(self) -> int:
         """How many fixes the receiver served beside a stepped robot has sent so far."""
         return 0

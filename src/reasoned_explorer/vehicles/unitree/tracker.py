@@ -88,6 +88,8 @@ class Tracker:
         self._fixes: asyncio.Queue[Fix] = asyncio.Queue()
         self._fixes_taken = 0
         self._way: _Way | None = None
+        #: For how many moments it has been told to stand.
+        self._stood = 0
         self._listening: asyncio.Task[None] | None = None
         self._idling: asyncio.Task[None] | None = None
         self.reading: BodyReading | None = None
@@ -97,11 +99,11 @@ class Tracker:
 
     # Its life.
 
-    async def start(self) -> None:
-        """Open the link, have the robot stand, begin to listen to the receiver.
+    async def connect(self) -> None:
+        """Open the link, have the robot stay as it is, begin to listen to the receiver.
 
         Raises:
-            PartError: If the robot is not heard, or lies and is not to get up.
+            PartError: If the robot is not heard.
         """
         if self._source is not None:
             self._listening = asyncio.create_task(self._listen(self._source))
@@ -111,24 +113,37 @@ class Tracker:
                 await self._take_fixes(self.robot.now_s(), due=1)
             await self.robot.start()
             await self._moment(None)
+        except BaseException:
+            await self.close(lies=False)
+            raise
+        self.idle()
+
+    async def rise(self) -> None:
+        """Have the robot stand.
+
+        Raises:
+            PartError: If it lies and is not to get up, or does not.
+        """
+        await self.stop_idling()
+        try:
             if self.reading is not None and self.reading.lies:
                 if not self.settings.gets_up:
                     raise PartError(self.robot.name, "it lies on the ground, and is not to be told to get up")
                 await self.robot.get_up()
                 await self._moment(None)
         except BaseException:
-            await self.close()
+            await self.close(lies=False)
             raise
         self.idle()
 
-    async def close(self) -> None:
-        """Leave the robot standing or lying, and hang up. Safe to call twice."""
+    async def close(self, *, lies: bool) -> None:
+        """Leave the robot standing, or have it lie down, and hang up. Safe to call twice."""
         await self.stop_idling()
         listening, self._listening = self._listening, None
         if listening is not None:
             listening.cancel()
             await asyncio.gather(listening, return_exceptions=True)
-        await self.robot.close(lies=self.settings.lies)
+        await self.robot.close(lies=lies)
 
     def idle(self) -> None:
         """Go on listening while the robot stands; a stepped robot's time stands, too."""
@@ -225,10 +240,21 @@ class Tracker:
 
     async def halt(self) -> None:
         """Stand, whatever it was at."""
-        self._way = None
         with suppress(PartError):
-            for _ in range(_REST_MOMENTS):
-                await self._moment(None)
+            await self.stop()
+
+    async def stop(self) -> None:
+        """Likewise.
+
+        Raises:
+            PartError: If the robot is not heard: it has then been told to stand, and stands by itself before long.
+        """
+        await self.stop_idling()
+        self._way = None
+        while True:
+            await self._moment(None)
+            if self._stood >= _REST_MOMENTS:
+                return
 
     # Inside.
 
@@ -272,6 +298,7 @@ class Tracker:
             way.log.see(self.robot.now_s() - way.began_s, self.here.pose, across_m=across_m)
 
     async def _moment(self, velocity: Velocity | None) -> None:
+        self._stood = self._stood + 1 if velocity is None else 0
         await self._take(await self.robot.moment(velocity))
 
     async def _take(self, reading: BodyReading) -> None:

@@ -14,6 +14,7 @@ from reasoned_explorer.geometry.frames import is_finite
 from reasoned_explorer.model import Fault, Leg, LegOutcome, PartError, SettingsError, View
 from reasoned_explorer.vehicles.looking import Content, turning_order
 from reasoned_explorer.vehicles.profile import VehicleProfile
+from reasoned_explorer.vehicles.safety.telemetry import Telemetry
 from reasoned_explorer.vehicles.unitree.go1_robot import Go1Robot
 from reasoned_explorer.vehicles.unitree.legs import LegLog
 from reasoned_explorer.vehicles.unitree.limits import CommandLimits
@@ -84,7 +85,7 @@ class UnitreeVehicle(Vehicle):
         self._robot, self._is_real = robot, clock.name == "real"
         self._tracker = Tracker(robot, profile, self.settings, whereabouts, positions)
         self._legs = self._looks = 0
-        self._is_up = False
+        self._is_linked = self._is_up = False
         self._known_s = self._robot_known_s = 0.0
         #: The last leg; after a cancelled `go_to` the part of it that was walked.
         self.last_leg: Leg | None = None
@@ -131,28 +132,85 @@ class UnitreeVehicle(Vehicle):
 
     # What it does.
 
+    def telemetry(self) -> Telemetry:
+        """Return what a guard is told: what is known now, also on the way; in step, what was at the end of a poll."""
+        here, reading = self._tracker.here, self._tracker.reading
+        battery = self.battery_percent
+        return Telemetry(
+            pose=self.pose,
+            t_s=None if reading is None else reading.time_s,
+            speed_mps=None if reading is None else reading.speed_mps,
+            yaw_rate_radps=None if reading is None else reading.turn_radps - here.gyro_bias_radps,
+            link_age_s=self._robot.silent_s if self._is_linked else None,
+            position_age_s=here.fix_age_s,
+            position=here.verdict,
+            battery=None if battery is None else battery / 100.0,
+            compass_rad=here.compass_rad,
+        )
+
+    async def refresh(self) -> None:
+        """Find out where the robot is, and that it is heard.
+
+        Raises:
+            PartError: If it is not.
+        """
+        await self._begin()
+        if self._robot.is_stepped and self._robot.silent_s > 0.0:
+            await self._talk(lambda: self._tracker.stand_for(self._robot.period_s))
+            await self._charge()
+        await self._leave()
+
+    async def halt(self) -> None:
+        """Stand, whatever it was doing.
+
+        Raises:
+            PartError: If it is not heard; it then stands by itself before long.
+        """
+        if self._is_up:
+            try:
+                await self._talk(self._tracker.stop)
+            finally:
+                await self._leave()
+
+    async def connect(self) -> None:
+        """Open the link and listen: to the robot, which stays as it is, standing or lying, and to its receiver.
+
+        Raises:
+            PartError: If it is not heard.
+        """
+        if self._is_linked:
+            return
+        await self._talk(self._tracker.connect)
+        self._is_linked = True
+        self._known_s, self._robot_known_s = self._clock.now_s(), 0.0
+        await self._charge()
+
     async def start(self) -> None:
-        """Open the link; the robot stands, having got up where it lay.
+        """Connect; the robot stands, having got up where it lay.
 
         Raises:
             PartError: If it is not heard or does not get up.
         """
-        await self._talk(self._tracker.start)
+        await self.connect()
+        try:
+            await self._talk(self._tracker.rise)
+        except BaseException:
+            self._is_linked = False
+            raise
         self._is_up = True
-        self._known_s, self._robot_known_s = self._clock.now_s(), 0.0
         await self._charge()
 
     async def close(self) -> None:
-        """Leave it standing, or lying, and hang up. Safe to call twice."""
-        if not self._is_up:
+        """Leave it standing, or lying, and hang up; one that was not started stays as it is. Safe to call twice."""
+        if not self._is_linked:
             return
-        self._is_up = False
-        await self._talk(self._tracker.close)
+        lies, self._is_up, self._is_linked = self._is_up and self.settings.lies, False, False
+        await self._talk(lambda: self._tracker.close(lies=lies))
 
     async def look(self, headings_rad: Sequence[float]) -> Sequence[View]:
         """Turn to each heading and take a view; keys are (legs so far, looks since the last leg, index).
 
-        It begins at the end of the list that is nearer to where it faces.
+        It begins at the end of the list that is nearer to where it faces. Only connected, it does not turn.
 
         Raises:
             SettingsError: If a heading is not finite.
@@ -165,7 +223,8 @@ class UnitreeVehicle(Vehicle):
         taken: dict[int, View] = {}
         try:
             for index in turning_order(self.pose.heading_rad, dict(enumerate(headings_rad))):
-                await self._turn(normalise_heading_rad(headings_rad[index]))
+                if self._is_up:
+                    await self._turn(normalise_heading_rad(headings_rad[index]))
                 image = await self._picture()
                 pose = self.pose
                 content = None if self._content is None else self._content(pose, self.profile.camera)
@@ -185,10 +244,12 @@ class UnitreeVehicle(Vehicle):
 
         Raises:
             SettingsError: If the target is not finite.
-            PartError: If the robot is not heard at the start.
+            PartError: If the robot is not heard at the start, or was not started.
         """
         if not is_finite(target.x_m, target.y_m, target.heading_rad):
             raise SettingsError("go_to", [Fault(f"target {target}", "finite coordinates and heading")])
+        if not self._is_up:
+            raise PartError(self._robot.name, "the vehicle is not started")
         self._legs, self._looks = self._legs + 1, 0
         await self._begin()
         log = LegLog(target, self._clock.now_s(), self.profile.camera_height_m)
@@ -275,7 +336,7 @@ class UnitreeVehicle(Vehicle):
         async def idle() -> None:
             self._tracker.idle()
 
-        if self._is_up:
+        if self._is_linked:
             await self._talk(idle)
 
 

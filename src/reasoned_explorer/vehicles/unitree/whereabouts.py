@@ -32,11 +32,15 @@ class Here:
         pose: What is believed; the height is 0.
         verdict: Whether it may walk by it.
         gyro_bias_radps: What its turn rates are off by.
+        fix_age_s: Since the last fix that was believed; None without a receiver.
+        compass_rad: The heading that its yaw alone says, which serves for a compass; None where the pose's is that.
     """
 
     pose: Pose
     verdict: PositionVerdict
     gyro_bias_radps: float = 0.0
+    fix_age_s: float | None = None
+    compass_rad: float | None = None
 
 
 class Whereabouts(Protocol):
@@ -142,5 +146,6 @@ class Surveyed:
         """Return where the filter believes it to be."""
         there = self.localizer.at(now_s)
         if there.estimate is None:
-            return Here(self._by_yaw, there.verdict)
-        return Here(there.estimate.pose, there.verdict, there.estimate.gyro_bias_radps)
+            return Here(self._by_yaw, there.verdict, fix_age_s=there.fix_age_s)
+        bias_radps, compass_rad = there.estimate.gyro_bias_radps, self._by_yaw.heading_rad
+        return Here(there.estimate.pose, there.verdict, bias_radps, there.fix_age_s, compass_rad)
