@@ -286,7 +286,8 @@ class AirSimVehicle(Vehicle):
         Raises:
             PartError: If it does not.
         """
-        begun_s = self._moment.t_s
+        # What was last heard may be from before a long thought.
+        begun_s = (await self._pace.talk(self.api.moment)).t_s
         while not pending.answered:
             await self._pace.until(pending, self.settings.poll_s)
             await self._see()

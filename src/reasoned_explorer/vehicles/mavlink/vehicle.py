@@ -365,7 +365,7 @@ class MavlinkVehicle(Vehicle):
         Raises:
             PartError: If that does not come about, the link is lost or somebody else has taken over.
         """
-        begun_s = self._moment.t_s
+        begun_s = (await self._pace.moment()).t_s  # what was last heard may be from before a long thought
         while True:
             await self._pace.until_idle(self.settings.poll_s)
             await self._see()
