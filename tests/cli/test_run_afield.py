@@ -1,4 +1,4 @@
-"""`rex run --world none`: a served drone whose world the mission is not told, and a server that is no model (a fake)."""
+"""`rex run --world none`: a served drone whose world nobody tells, and a server that is no model (a fake)."""
 
 import json
 from collections.abc import Iterator, Mapping

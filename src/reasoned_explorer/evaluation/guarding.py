@@ -15,6 +15,7 @@ from reasoned_explorer.vehicles.safety.building import guarded
 from reasoned_explorer.vehicles.safety.guard import Confirm, GuardedVehicle
 from reasoned_explorer.vehicles.safety.limits import SafetyLimits
 from reasoned_explorer.vehicles.safety.operator_stop import OperatorStop
+from reasoned_explorer.vehicles.safety.watch import RangeAhead
 
 if TYPE_CHECKING:
     from reasoned_explorer.evaluation.mission_course import MissionCourse
@@ -70,7 +71,16 @@ class Guarding:
             stop=self.stop,
             confirm=self.confirm,
             dry_run=self.dry_run,
+            range_ahead_m=self._range_ahead(mission),
         )
+
+    def _range_ahead(self, mission: "MissionCourse") -> RangeAhead | None:
+        """Return what looks ahead in the world for a machine that does not itself; None where it is no simulator's.
+
+        On real time the machine may be real: what a world has at a place need not stand there.
+        """
+        is_simulated = not self.address.may_be_real or mission.settings.clock != "real"
+        return mission.range_ahead() if is_simulated and not self.address.looks_ahead else None
 
     def limits_at(self, start: Pose) -> SafetyLimits:
         """Return the limits of a vehicle that begins somewhere."""

@@ -194,8 +194,9 @@ class Mission(MissionCourse):
         return (PixelEyes if self.settings.eyes == "pixels" else Eyes)(self.atlas).look
 
     def range_ahead(self) -> RangeAhead | None:
-        """Return what says how far something stands before a pose."""
-        return PixelEyes(self.atlas).range_ahead_m
+        """Return what says how far something stands before a pose, at the height of the camera."""
+        eyes, height_m = PixelEyes(self.atlas), self.profile.camera_height_m
+        return lambda pose: eyes.range_ahead_m(replace(pose, z_m=height_m))
 
     def _place(self) -> str | None:
         world = self.atlas.world

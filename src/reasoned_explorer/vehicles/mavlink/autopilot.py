@@ -36,7 +36,7 @@ _ACCEPTED, _IN_PROGRESS = 0, 5
 _ARM, _SET_MODE, _MESSAGE_INTERVAL = 400, 176, 511
 _CUSTOM_MODE = 1
 #: Messages asked for at the rate of positions, and once a second, by their numbers.
-_OFTEN = (30, 32, 33)
+_OFTEN = (30, 32, 33, 132)
 _SELDOM = (1, 24, 147, 193, 230, 245)
 _REAL32 = 9
 
@@ -280,6 +280,11 @@ class Autopilot:
     @property
     def _to(self) -> tuple[int, int]:
         return self._target or (0, 0)
+
+    @property
+    def range_ahead_m(self) -> float | None:
+        """How far it is to what stands ahead, by a distance sensor of the machine; None where there is none."""
+        return self.telemetry.range_ahead_m(self._now_s())
 
     def _now_s(self) -> float:
         return 0.0 if self._loop is None else self._loop.time()

@@ -91,7 +91,9 @@ class MavlinkVehicle(Vehicle):
 
     def telemetry(self) -> Telemetry:
         """Return what a guard is told; a lost link and a poor position are seen to by driver and autopilot."""
-        return Telemetry(self.pose, t_s=self._moment.t_s, battery=self.battery.remaining)
+        return Telemetry(
+            self.pose, t_s=self._moment.t_s, battery=self.battery.remaining, range_ahead_m=self.autopilot.range_ahead_m
+        )
 
     @property
     def position_quality(self) -> PositionQuality:
