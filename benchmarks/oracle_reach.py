@@ -76,8 +76,8 @@ def main() -> None:
             summary = Mission(episode.spec.text, atlas, settings, start=episode.start).run().summary
             level = episode.spec.level
             tried[level] = tried.get(level, 0) + 1
-            found[level] = found.get(level, 0) + summary.success
-            here += summary.success
+            found[level] = found.get(level, 0) + bool(summary.success)
+            here += bool(summary.success)
             if not summary.success:
                 print(
                     f"  not found: L{level} {episode.spec.text!r} from {episode.start}: {summary.end}, {summary.judge}"

@@ -55,7 +55,7 @@ def run(
         str,
         typer.Option(
             help="A district (park, downtown:7, town@800 …), a .osm/.osm.pbf file, or a .rexworld file; "
-            "~permuted:SEED behind it deals its labels anew."
+            "~permuted:SEED behind it deals its labels anew; none where none is known, as outdoors."
         ),
     ] = "park:7",
     bbox: Annotated[str | None, typer.Option(help="Crop an OpenStreetMap file: lon0,lat0,lon1,lat1 (degrees).")] = None,
@@ -137,7 +137,11 @@ def run(
 ) -> None:
     """Run one mission: from a sentence to "Found Goal".
 
-    Exit code 0: found. 1: ended without. 2: bad input. 3: a part failed. 130: stopped with Ctrl-C.
+    With --world none a vehicle at an address explores where nothing is known, by what its camera shows to a model; the
+    agent alone says whether it has found it, and nobody judges.
+
+    Exit code 0: found (without a world: it says so). 1: ended without. 2: bad input. 3: a part failed. 130: stopped
+    with Ctrl-C.
     """
     from reasoned_explorer.cli.models import ModelOptions
     from reasoned_explorer.cli.run import RunOptions, run_from_options

@@ -16,7 +16,7 @@ from reasoned_explorer.calls.prices import read_prices
 from reasoned_explorer.calls.tape import TapePlayer
 from reasoned_explorer.cli.answers import complain
 from reasoned_explorer.cli.consent import agree_to_send
-from reasoned_explorer.evaluation.mission import Mission
+from reasoned_explorer.evaluation.mission_course import MissionCourse
 from reasoned_explorer.evaluation.mission_settings import MissionSettings, models_of
 from reasoned_explorer.evaluation.model_desk import ModelDesk
 from reasoned_explorer.model import Fault, Gathering, RecordError, SettingsError
@@ -131,7 +131,7 @@ class ModelOptions:
             complain(f"go on with it: the same command with --resume {tape}, a new --out{more}")
 
     @contextmanager
-    def taping(self, desk: ModelDesk, mission: Mission, folder: Path) -> Iterator[None]:
+    def taping(self, desk: ModelDesk, mission: MissionCourse, folder: Path) -> Iterator[None]:
         """Write what a mission calls to a tape, or see that it is the one on the tape.
 
         Args:

@@ -31,7 +31,10 @@ def header_lines(header: MissionHeader) -> Iterator[str]:
     yield f"  eyes     {header.captioner}; vehicle {header.vehicle}"
     yield f"  clock    {header.clock}, CT {header.ct_label}; seed {header.seed}"
     reference = "none" if header.reference_length_m is None else f"{header.reference_length_m:.0f} m"
-    yield f"  judge    {len(header.goal_objects)} things here satisfy the goal; shortest way {reference}"
+    if header.is_judged:
+        yield f"  judge    {len(header.goal_objects)} things here satisfy the goal; shortest way {reference}"
+    else:
+        yield "  judge    nobody: no world is known; the goal is read as"
     for line in header.understood[:4]:
         yield f"           {_clipped(line)}"
     if len(header.understood) > 4:
@@ -120,15 +123,14 @@ def summary_lines(record: EpisodeRecord) -> Iterator[str]:
     yield from _outcome_lines(summary)
     reference = "none" if summary.reference_length_m is None else f"{summary.reference_length_m:.0f} m"
     left = "" if summary.distance_to_goal_m is None else f", ended {summary.distance_to_goal_m:.0f} m from a goal"
+    if not record.header.is_judged:
+        reference = "not known"
     yield f"  path     {summary.path_length_m:.0f} m travelled, shortest way {reference}{left}"
     spent_s, calls = summary.ct_s + summary.tt_s, ", ".join(f"{n} {role}" for role, n in summary.calls.items())
     yield f"  time     CT {summary.ct_s:.0f} s ({record.header.ct_label}) + TT {summary.tt_s:.0f} s = {_clock(spent_s)}"
     yield f"  calls    {calls or 'none'}"
     yield from _model_lines(record)
-    yield (
-        f"  scores   SR {summary.success:d}  OSR {summary.oracle_success:d}  SPL {summary.spl:.2f}"
-        f"  CASR {summary.casr:.2f}   [{record.header.minds}]"
-    )
+    yield f"  scores   {_scores(summary)}   [{record.header.minds}]"
     if summary.collisions:
         yield f"  bumps    {len(summary.collisions)}: {_clipped(', '.join(summary.collisions))}"
 
@@ -148,9 +150,17 @@ def _model_lines(record: EpisodeRecord) -> Iterator[str]:
         yield f"  lost     {faults.total()} calls have no answer: {_clipped(lost)}"
 
 
+def _scores(summary: MissionSummary) -> str:
+    if summary.success is None or summary.oracle_success is None or summary.spl is None or summary.casr is None:
+        return "not judged: SR, OSR, SPL and CASR are not known"
+    return f"SR {summary.success:d}  OSR {summary.oracle_success:d}  SPL {summary.spl:.2f}  CASR {summary.casr:.2f}"
+
+
 def _outcome_lines(summary: MissionSummary) -> Iterator[str]:
     if summary.declared and summary.success:
         yield f"Found Goal: {summary.judge}"
+    elif summary.declared and summary.success is None:
+        yield f"declared “Found Goal”; {summary.judge}"
     elif summary.declared:
         yield f"declared “Found Goal”, but the judge disagrees: {summary.judge}"
     else:

@@ -3,8 +3,8 @@
 import asyncio
 import math
 import re
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -17,8 +17,16 @@ from reasoned_explorer.cli.models import ModelOptions
 from reasoned_explorer.cli.parsing import BoxDeg, check_start_form, parse_bbox, parse_start
 from reasoned_explorer.cli.progress import Progress, header_lines, summary_lines
 from reasoned_explorer.cli.vehicles import VehicleOptions
+from reasoned_explorer.evaluation.field_mission import (
+    NO_WORLD,
+    FieldMission,
+    FieldResult,
+    faults_without_world,
+    whereabouts,
+)
 from reasoned_explorer.evaluation.methods import BOUND_METHODS
 from reasoned_explorer.evaluation.mission import Mission, MissionResult
+from reasoned_explorer.evaluation.mission_course import MissionCourse
 from reasoned_explorer.evaluation.mission_settings import MissionSettings, errors_of, models_of
 from reasoned_explorer.evaluation.model_desk import ModelDesk
 from reasoned_explorer.evaluation.picture_folder import PICTURES_NAME
@@ -109,13 +117,43 @@ class RunOptions:
         # Models that are called take real seconds.
         settings = replace(settings, clock=self.clock or self._usual_clock(models_of(settings)))
         found.add(*errors_of(settings))
+        if self.is_afield:
+            found.check(lambda: self._check_afield(settings))
         self.models.check(settings, found)
         if self.planner in BOUND_METHODS or "+" in self.planner or ":" in self.planner or "@" in self.planner:
             fault = Fault(f"{self.planner!r}", "a planner by its name alone", "it may be a row of rex bench --planners")
             found.add(SettingsError("--planner", [fault]))
         return settings
 
+    @property
+    def is_afield(self) -> bool:
+        """Whether no world is known, as outdoors."""
+        return self.world.strip().lower() == NO_WORLD
+
+    def _check_afield(self, settings: MissionSettings) -> None:
+        """Check what a mission without a world must and must not be given.
+
+        Raises:
+            SettingsError: With everything that is wrong.
+        """
+        address = None
+        with suppress(InputError):  # what is wrong with the address is told by itself
+            address = self.vehicle.address
+        faults = faults_without_world(settings, address, vehicle=self.vehicle.vehicle)
+        if address is None and ":" in self.vehicle.vehicle:
+            del faults[0]
+        given = {"--bbox": self.bbox, "--start": self.start}
+        here = "it begins where the vehicle says that it stands"
+        faults += [Fault(f"{name} without a world", "none", here) for name, value in given.items() if value is not None]
+        taped = {"--resume": self.models.resume, "--replay": self.models.replay}
+        again = "a mission in a world, which shows the same again"
+        faults += [Fault(f"{name} without a world", again) for name, value in taped.items() if value is not None]
+        if faults:
+            raise SettingsError(f"--world {NO_WORLD}", faults)
+
     def _usual_clock(self, models: Sequence[str]) -> str:
+        if self.is_afield:
+            return "real"
         with suppress(InputError):
             address = self.vehicle.address
             if address is not None and address.may_be_real:
@@ -143,7 +181,8 @@ class RunOptions:
         found.check(lambda: read_goal(self.goal))
         bbox = found.take(lambda: parse_bbox(self.bbox), None)
         seed = max(self.seed, 0)  # a wrong one is told once, as the mission's
-        found.check(lambda: check_world_name(self.world, seed=seed, bbox=bbox))
+        if not self.is_afield:
+            found.check(lambda: check_world_name(self.world, seed=seed, bbox=bbox))
         found.check(lambda: check_start_form(self.start))
         settings = self.settings(found)
         self.vehicle.check(found)
@@ -159,6 +198,9 @@ def run_from_options(options: RunOptions) -> None:
     if not options.quiet and not _kernels_are_compiled():
         console.print("compiling the kernels, which takes up to a minute (the first time only) …", markup=False)
     stop_if_asked()
+    if options.is_afield:
+        _run_afield(options, settings, folder, console)
+        return
     world, notes = open_world_with_notes(options.world, seed=options.seed, bbox=bbox)
     for note in notes:
         complain(f"note: {note}; choose a part with --bbox")
@@ -177,16 +219,49 @@ def run_from_options(options: RunOptions) -> None:
             pictures=folder / PICTURES_NAME if options.images else None,
             guarding=guarding,
         )
-        result = _run(options, mission, folder, desk, console)
+        with _shown(options, mission, folder, desk, console) as on_step:
+            result = mission.run(folder=folder, on_step=on_step)
+    _finish(options, result, folder, desk, console)
+
+
+def _run_afield(options: RunOptions, settings: MissionSettings, folder: Path, console: Output) -> None:
+    """Run a mission of which no world is known."""
+    desk = options.models.desk()
+    options.models.agree(desk, settings.captioner, [f"what {options.vehicle.vehicle} sees"])
+    with options.vehicle.guarding(is_real=settings.clock == "real") as guarding:
+        if guarding is None:  # what was typed has been checked
+            raise AssertionError
+        mission = FieldMission(
+            options.goal,
+            settings,
+            guarding,
+            there=asyncio.run(whereabouts(guarding)),
+            desk=desk,
+            pictures=folder / PICTURES_NAME if options.images else None,
+        )
+        with _shown(options, mission, folder, desk, console) as on_step:
+            result = mission.run(folder=folder, on_step=on_step)
+    _finish(options, result, folder, desk, console)
+
+
+def _finish(
+    options: RunOptions, result: MissionResult | FieldResult, folder: Path, desk: ModelDesk, console: Output
+) -> None:
+    """Say what came of a mission, keep its map, and exit."""
     for line in summary_lines(result.record):
         console.print(line, markup=False, soft_wrap=True)
     _keep(result, folder, draw=options.draw)
     console.print(f"kept in {folder}", markup=False, soft_wrap=True)
-    options.models.say_how_to_go_on(desk, folder)
+    if isinstance(result, MissionResult):
+        options.models.say_how_to_go_on(desk, folder)
     raise typer.Exit(_exit_code(result))
 
 
-def _run(options: RunOptions, mission: Mission, folder: Path, desk: ModelDesk, console: Output) -> MissionResult:
+@contextmanager
+def _shown(
+    options: RunOptions, mission: MissionCourse, folder: Path, desk: ModelDesk, console: Output
+) -> Iterator[Callable[[StepRecord], None]]:
+    """Show a mission while it runs, and keep its calls; gives what is told each step."""
     stop_if_asked()
     if not options.quiet:
         for line in header_lines(mission.header):
@@ -203,7 +278,7 @@ def _run(options: RunOptions, mission: Mission, folder: Path, desk: ModelDesk, c
                 console.print(line, markup=False, soft_wrap=True)
 
     with options.models.taping(desk, mission, folder):
-        return mission.run(folder=folder, on_step=on_step)
+        yield on_step
 
 
 def _start(options: RunOptions, atlas: Atlas, address: VehicleAddress | None) -> Pose | None:
@@ -221,18 +296,22 @@ def _kernels_are_compiled() -> bool:
     return any(Path(run_leg.stats.cache_path).glob("kernels.run_leg-*.nbi"))
 
 
-def _keep(result: MissionResult, folder: Path, *, draw: bool) -> None:
+def _keep(result: MissionResult | FieldResult, folder: Path, *, draw: bool) -> None:
     stop_if_asked()
-    save_world(result.world, folder / WORLD_NAME)
+    if isinstance(result, MissionResult):
+        save_world(result.world, folder / WORLD_NAME)
     if draw:
         stop_if_asked()
         result.draw_map(folder / MAP_NAME)
 
 
-def _exit_code(result: MissionResult) -> ExitCode:
-    if result.summary.end is MissionEnd.FAULT:
+def _exit_code(result: MissionResult | FieldResult) -> ExitCode:
+    summary = result.summary
+    if summary.end is MissionEnd.FAULT:
         return ExitCode.PART_FAILED
-    return ExitCode.FOUND if result.summary.success else ExitCode.NOT_FOUND
+    # Where nobody judges, the agent's word is all that there is.
+    found = summary.declared if summary.success is None else summary.success
+    return ExitCode.FOUND if found else ExitCode.NOT_FOUND
 
 
 def _folder(options: RunOptions) -> Path:

@@ -10,16 +10,15 @@ from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Fault, SettingsError
 from reasoned_explorer.model.checks import is_within
 from reasoned_explorer.model.record import CallRecord
-from reasoned_explorer.simulation.eyes import Eyes
-from reasoned_explorer.simulation.pixel_eyes import PixelEyes
 from reasoned_explorer.vehicles.safety.area import Circle
 from reasoned_explorer.vehicles.safety.building import guarded
 from reasoned_explorer.vehicles.safety.guard import Confirm, GuardedVehicle
 from reasoned_explorer.vehicles.safety.limits import SafetyLimits
 from reasoned_explorer.vehicles.safety.operator_stop import OperatorStop
+from reasoned_explorer.vehicles.safety.watch import RangeAhead
 
 if TYPE_CHECKING:
-    from reasoned_explorer.evaluation.mission import Mission
+    from reasoned_explorer.evaluation.mission_course import MissionCourse
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,21 +50,19 @@ class Guarding:
         if self.fence_m is not None and not is_within(self.fence_m, 2.0, 1e5):
             raise SettingsError("guard", [Fault(f"a fence of {self.fence_m!r:.40}", "metres in [2, 100000]")])
 
-    def vehicle(self, mission: "Mission") -> GuardedVehicle:
+    def vehicle(self, mission: "MissionCourse") -> GuardedVehicle:
         """Return the vehicle of a mission, which connects when it is started.
 
         Raises:
             SettingsError: If the vehicle cannot keep to the limits, or pictures are wanted that it does not take.
             MissingDependencyError: If the library of its wire is not installed.
         """
-        settings, content = mission.settings, None
+        settings = mission.settings
         shows = is_model_name(settings.captioner) or mission.keeps_pictures
         if shows and not self.address.has_camera:
             fault = Fault(f"no pictures come from {self.address}", "a simulated captioner", "and no --images")
             raise SettingsError("vehicle", [fault])
-        if not is_model_name(settings.captioner):
-            content = (PixelEyes if settings.eyes == "pixels" else Eyes)(mission.atlas).look
-        errand = Errand(mission.clock, mission.start, shows, content, self.may_move)
+        errand = Errand(mission.clock, mission.home, shows, mission.content(), self.may_move)
         return guarded(
             lambda profile: self.address.vehicle(profile, errand),
             mission.profile,
@@ -74,7 +71,16 @@ class Guarding:
             stop=self.stop,
             confirm=self.confirm,
             dry_run=self.dry_run,
+            range_ahead_m=self._range_ahead(mission),
         )
+
+    def _range_ahead(self, mission: "MissionCourse") -> RangeAhead | None:
+        """Return what looks ahead in the world for a machine that does not itself; None where it is no simulator's.
+
+        On real time the machine may be real: what a world has at a place need not stand there.
+        """
+        is_simulated = not self.address.may_be_real or mission.settings.clock != "real"
+        return mission.range_ahead() if is_simulated and not self.address.looks_ahead else None
 
     def limits_at(self, start: Pose) -> SafetyLimits:
         """Return the limits of a vehicle that begins somewhere."""

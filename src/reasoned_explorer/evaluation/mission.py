@@ -1,53 +1,36 @@
 """One mission from a sentence to its score: puts the rooms together, runs the agent, has the judge look at it."""
 
-import gc
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
-from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 
-from reasoned_explorer.calls.caller import Caller, end_of
 from reasoned_explorer.calls.chat import is_model_name
-from reasoned_explorer.calls.ledger import CallRecord, Ledger
-from reasoned_explorer.evaluation.guarding import Guarding, listen_for_lost_calls
+from reasoned_explorer.evaluation.guarding import Guarding
 from reasoned_explorer.evaluation.guide import GUIDE_LABEL, Guide
-from reasoned_explorer.evaluation.mission_settings import CLOCKS, THROUGH_PIXELS, errors_of, with_overrides
+from reasoned_explorer.evaluation.mission_course import MissionCourse, calls_by_role, versions
+from reasoned_explorer.evaluation.mission_settings import CLOCKS, errors_of
 from reasoned_explorer.evaluation.mission_settings import MissionSettings as MissionSettings  # noqa: PLC0414 - is had from here, too
 from reasoned_explorer.evaluation.model_desk import ModelDesk
-from reasoned_explorer.evaluation.picture_folder import KeepingCaptioner
-from reasoned_explorer.evaluation.record_file import RecordWriter
 from reasoned_explorer.evaluation.scoring import MissionScore, outcome_of, score
 from reasoned_explorer.evaluation.track import looks_of, track_of
 from reasoned_explorer.evaluation.truth import OracleTruth
-from reasoned_explorer.exploration.explorer import Exploration, Explorer, Parts
+from reasoned_explorer.exploration.explorer import Exploration, Explorer
 from reasoned_explorer.geometry import Pose
-from reasoned_explorer.minds.context import MindContext, Minds
-from reasoned_explorer.minds.latency import latency_profile
-from reasoned_explorer.minds.prompted import prompted_minds
-from reasoned_explorer.minds.registry import make_minds
 from reasoned_explorer.model import (
     Fault,
     Gathering,
     InputError,
     LegOutcome,
     RecordError,
-    RecordWriteError,
     SettingsError,
     StartError,
     WorldError,
 )
 from reasoned_explorer.model.checks import kind_faults, path_of
-from reasoned_explorer.model.garbage import RARELY
 from reasoned_explorer.model.record import EpisodeRecord, MissionEnd, MissionHeader, MissionSummary, StepRecord
 from reasoned_explorer.model.stopping import stop_if_asked
-from reasoned_explorer.perception import Captioner
-from reasoned_explorer.perception.context import CaptionerContext
-from reasoned_explorer.perception.registry import CAPTIONERS
-from reasoned_explorer.planning.registry import make_planner
 from reasoned_explorer.simulation.eyes import Eyes
 from reasoned_explorer.simulation.painter import Painter
 from reasoned_explorer.simulation.pixel_eyes import PixelEyes
@@ -57,8 +40,9 @@ from reasoned_explorer.task.judge import Judge, TrackReport
 from reasoned_explorer.task.reading import read_goal
 from reasoned_explorer.task.sampling import OutOfRangeError, SamplingSettings, sample_start, settle_for_a_start
 from reasoned_explorer.vehicles import VehicleProfile
+from reasoned_explorer.vehicles.looking import Content
 from reasoned_explorer.vehicles.registry import vehicle_profile
-from reasoned_explorer.vehicles.safety.guard import GuardedVehicle
+from reasoned_explorer.vehicles.safety.watch import RangeAhead
 from reasoned_explorer.vehicles.vehicle import Vehicle
 from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.geodesic import Traveller
@@ -99,7 +83,7 @@ class MissionResult:
         draw_record(self.world, self.record, path_of(path, "map picture", RecordError))
 
 
-class Mission:
+class Mission(MissionCourse):
     """A mission that is ready to run: every input has been checked, nothing has been written.
 
     Args:
@@ -168,53 +152,10 @@ class Mission:
                 whole step. Before the first one nothing is left.
             KeyboardInterrupt: If a person stops it; the record then says so and ends at its last whole step.
         """
-        header = self.header
-        steps: list[StepRecord] = []
-        if folder is None:
-            return self._run(header, steps, None, on_step)
-        with RecordWriter(folder) as writer:
-            writer.header(header)
-            return self._run(header, steps, writer, on_step)
-
-    def _run(
-        self,
-        header: MissionHeader,
-        steps: list[StepRecord],
-        writer: RecordWriter | None,
-        on_step: Callable[[StepRecord], None] | None,
-    ) -> MissionResult:
-        def keep(step: StepRecord) -> None:
-            steps.append(step)
-            if writer is not None:
-                writer.step(step)
-            if on_step is not None:
-                on_step(step)
-
-        self.explorer.on_step = keep
-        try:
-            with _rare_collections():
-                exploration = self.clock.run(self.explorer.run(self.goal))
-        except KeyboardInterrupt:
-            self._break_off("stopped by a person", header, steps, writer)
-            raise
-        except RecordWriteError as error:
-            # A summary is short: often there is room for it where there was none for a step.
-            with suppress(RecordWriteError):
-                self._break_off(str(error), header, steps, writer)
-            raise
-        summary, score = self._summary(header, exploration, steps)
-        if writer is not None:
-            writer.summary(summary)
-        folder = writer.path.parent if writer is not None else None
-        return MissionResult(EpisodeRecord(header, tuple(steps), summary), self.atlas.world, score, folder)
-
-    def _break_off(
-        self, reason: str, header: MissionHeader, steps: list[StepRecord], writer: RecordWriter | None
-    ) -> None:
-        """Have the record say why it ends here."""
-        if writer is not None:
-            stopped = self._exploration_so_far(steps, reason)
-            writer.summary(self._summary(header, stopped, steps)[0])
+        record, score, folder = self._record(folder, on_step)
+        if score is None:  # a mission in a world is judged
+            raise AssertionError
+        return MissionResult(record, self.atlas.world, score, folder)
 
     def _start(self, start: Pose | None, traveller: Traveller) -> Pose:
         if start is not None:
@@ -241,76 +182,25 @@ class Mission:
         self._labels = (GUIDE_LABEL, "no minds", "no captions")
         return Guide(truth, self._vehicle(), self.clock)
 
-    def _explorer(self, truth: OracleTruth) -> Explorer:
-        settings, ledger = self.settings, Ledger()
-        latency = latency_profile(settings.latency)
-        callers: list[Caller] = []
-
-        def desk_for_all() -> ModelDesk:
-            self._desk = self._desk or ModelDesk()
-            return self._desk
-
-        def caller_of(name: str) -> tuple[ModelDesk, Caller]:
-            desk = desk_for_all()
-            callers.append(desk.caller(name, self.clock, ledger))
-            return desk, callers[-1]
-
-        def model_minds(name: str) -> Minds:
-            desk_for_all().check_minds([name])
-            desk, caller = caller_of(name)
-            return prompted_minds(caller, name=name, abilities=desk.abilities(name), seed=settings.seed)
-
-        def model_captioner(name: str) -> Captioner:
-            desk, caller = caller_of(name)
-            world = self.atlas.world
-            return desk.captioner(name, caller, seed=settings.seed, place=None if world.origin is None else world.name)
-
-        minds = make_minds(
-            MindContext(self.clock, latency, ledger, settings.seed, truth, model_minds),
-            settings.minds,
-            visionary=settings.visionary,
-            evaluator=settings.evaluator,
-            checker=settings.checker,
-        )
-
-        async def charge_captions(_role: str, key: tuple[int, ...], count: int) -> None:
-            started_s = self.clock.now_s()
-            spent_s = [latency.duration_s("caption", settings.seed, *key, index) for index in range(count)]
-            await self.clock.think(max(spent_s, default=0.0))
-            ledger.add_all(
-                CallRecord("caption", settings.captioner, (*key, index), started_s, seconds)
-                for index, seconds in enumerate(spent_s)
-            )
-
-        captioner: Captioner
-        if is_model_name(settings.captioner):
-            captioner = model_captioner(settings.captioner)
-        else:
-            context = CaptionerContext(self.clock, settings.seed, charge_captions)
-            captioner = CAPTIONERS.load(settings.captioner)(context)
-        if self._pictures is not None:
-            captioner = KeepingCaptioner(captioner, self._pictures)
-        planner = make_planner(settings.planner, minds, settings.planner_settings)
-        through = THROUGH_PIXELS if settings.eyes == "pixels" and not is_model_name(settings.captioner) else ""
-        self._labels = (planner.label, minds.label, captioner.label + through)
-        explorer = with_overrides(settings.explorer, planner)
-        self.settings = replace(settings, explorer=explorer)
-        vehicle, models_end = self._vehicle(), end_of(callers)
-        parts = Parts(vehicle, captioner, planner, minds.checker, self.clock, ledger, models_end)
-        if isinstance(vehicle, GuardedVehicle):
-            guard = vehicle
-            listen_for_lost_calls(guard, ledger)
-            parts = replace(
-                parts,
-                must_end=lambda: models_end() or guard.must_end(),
-                take_interventions=guard.take_interventions,
-            )
-        return Explorer(parts, explorer)
-
     @property
-    def keeps_pictures(self) -> bool:
-        """Whether the pictures of all views are kept."""
-        return self._pictures is not None
+    def home(self) -> Pose:
+        """Where the vehicle was switched on: where the mission begins."""
+        return self.start
+
+    def content(self) -> Content | None:
+        """Return what says what a camera shows, for simulated captioners; None where a model looks at pictures."""
+        if is_model_name(self.settings.captioner):
+            return None
+        return (PixelEyes if self.settings.eyes == "pixels" else Eyes)(self.atlas).look
+
+    def range_ahead(self) -> RangeAhead | None:
+        """Return what says how far something stands before a pose, at the height of the camera."""
+        eyes, height_m = PixelEyes(self.atlas), self.profile.camera_height_m
+        return lambda pose: eyes.range_ahead_m(replace(pose, z_m=height_m))
+
+    def _place(self) -> str | None:
+        world = self.atlas.world
+        return None if world.origin is None else world.name
 
     def _vehicle(self) -> Vehicle:
         if self._guarding is not None:
@@ -350,7 +240,7 @@ class Mission:
             ct_label=self._ct_label(),
             settings=asdict(self.settings),
             seed=self.settings.seed,
-            versions=dict(_versions()),
+            versions=dict(versions()),
             goal_objects=self._goal_objects(),
             reference_length_m=round(length_m, 3) if np.isfinite(length_m) else None,
             reference_way=tuple((round(float(x), 2), round(float(y), 2)) for x, y in way) if way is not None else (),
@@ -360,22 +250,12 @@ class Mission:
             origin_deg=None if world.origin is None else (world.origin.lat_deg, world.origin.lon_deg),
         )
 
-    def _ct_label(self) -> str:
-        measured = {"virtual": "modelled", "mixed": "measured, modelled where embedded", "real": "measured"}
-        return f"{measured[self.settings.clock]} ({self.settings.latency})"
-
     def _goal_objects(self) -> tuple[tuple[int, str, float, float, int], ...]:
         objects = self.atlas.world.objects
         return tuple(
             (index, objects[index].class_name, round(objects[index].x_m, 2), round(objects[index].y_m, 2), grade)
             for index, grade in self.judge.satisfying
         )
-
-    def _exploration_so_far(self, steps: list[StepRecord], reason: str) -> Exploration:
-        last = steps[-1] if steps else None
-        plan_s = sum(step.plan_s for step in steps)
-        ct_s, tt_s = (last.ct_s, last.tt_s) if last else (0.0, 0.0)
-        return Exploration(MissionEnd.INTERRUPTED, reason, ct_s, tt_s, plan_s, len(steps))
 
     def _summary(
         self, header: MissionHeader, ended: Exploration, steps: list[StepRecord]
@@ -402,10 +282,6 @@ class Mission:
                 reference_way=header.reference_way,
             )
         )
-        calls: dict[str, int] = {}
-        for step in steps:
-            for call in step.calls:
-                calls[call.role] = calls.get(call.role, 0) + 1
         summary = MissionSummary(
             end=ended.end,
             reason=ended.reason,
@@ -422,7 +298,7 @@ class Mission:
             tt_s=round(ended.tt_s, 6),
             plan_s=round(ended.plan_s, 6),
             steps=ended.steps,
-            calls=dict(sorted(calls.items())),
+            calls=calls_by_role(steps),
             radii={f"{radius_m:g}": hit for radius_m, hit in scored.success_at},
             judge=self._verdict(judged),
             collisions=tuple(leg.detail for step in steps for leg in step.legs if leg.outcome is LegOutcome.COLLISION),
@@ -477,22 +353,6 @@ def _about_settled(length_m: float, too_near: int) -> tuple[str, ...]:
     kind = "farthest" if length_m < low else "nearest"
     lacking = f"no random start has a shortest way of {low:g} to {high:g} m"
     return (f"{lacking} ({too_near} too near); this is the {kind} found, {length_m:.1f} m",)
-
-
-@cache
-def _versions() -> tuple[tuple[str, str], ...]:
-    return tuple((name, version(name)) for name in ("reasoned-explorer", "numpy", "numba", "shapely"))
-
-
-@contextmanager
-def _rare_collections() -> Iterator[None]:
-    """Look for garbage cycles rarely: a mission makes few, and looking goes through the whole world each time."""
-    before = gc.get_threshold()
-    gc.set_threshold(*RARELY)
-    try:
-        yield
-    finally:
-        gc.set_threshold(*before)
 
 
 def _finite(value: float | None) -> float | None:

@@ -56,6 +56,10 @@ class VehicleAddress(Protocol):
     def has_camera(self) -> bool:
         """Whether pictures come from there."""
 
+    @property
+    def looks_ahead(self) -> bool:
+        """Whether it tells how far it is to what stands ahead of it."""
+
     def vehicle(self, profile: VehicleProfile, errand: Errand) -> Vehicle:
         """Return the driver of the vehicle, which connects when it is started.
 
@@ -104,6 +108,11 @@ class AirSimAddress:
         """They come over the wire."""
         return True
 
+    @property
+    def looks_ahead(self) -> bool:
+        """By depth pictures."""
+        return True
+
     def vehicle(self, profile: VehicleProfile, errand: Errand) -> Vehicle:
         """Return the driver."""
         from reasoned_explorer.vehicles.airsim.settings import DriverSettings
@@ -115,7 +124,9 @@ class AirSimAddress:
             host=self.host,
             port=self.port,
             home=replace(errand.start, z_m=0.0),
-            settings=DriverSettings(aims=True, pictures=errand.pictures, settle_s=0.0),
+            settings=DriverSettings(
+                aims=True, pictures=errand.pictures, settle_s=0.0, range_camera=DriverSettings().cameras[0]
+            ),
             content=errand.content,
         )
 
@@ -149,6 +160,11 @@ class MavlinkAddress:
     @property
     def has_camera(self) -> bool:
         """They do not come over this wire."""
+        return False
+
+    @property
+    def looks_ahead(self) -> bool:
+        """Only where there is a distance sensor, which nobody can tell by an address."""
         return False
 
     def vehicle(self, profile: VehicleProfile, errand: Errand) -> Vehicle:

@@ -28,8 +28,8 @@ class MissionHeader:
     Attributes:
         goal: The goal sentence.
         level: OUTDOOR's level, or None.
-        world: Name of the world.
-        world_digest: SHA-256 of what the world contains, hexadecimal.
+        world: Name of the world; ``"none"`` where none is known, as outdoors: nobody judges then.
+        world_digest: SHA-256 of what the world contains, hexadecimal; empty where none is known.
         attribution: Of the world's data.
         start: x_m, y_m, z_m, heading_rad.
         planner: Its label.
@@ -74,6 +74,11 @@ class MissionHeader:
     origin_deg: tuple[float, float] | None = None
     notes: tuple[str, ...] = ()
     schema: int = RECORD_SCHEMA
+
+    @property
+    def is_judged(self) -> bool:
+        """Whether there is a world, and so a judge."""
+        return bool(self.world_digest)
 
 
 @dataclass(frozen=True, slots=True)
@@ -268,11 +273,11 @@ class MissionSummary:
         end: How it ended.
         reason: In words.
         declared: Whether "Found Goal" was said.
-        success: Judged.
-        oracle_success: Judged at any moment of the track.
+        success: Judged; None where nobody judges, since no world is known.
+        oracle_success: Judged at any moment of the track; likewise.
         compliant: Whether shunned ground was kept off (level 3); None where the goal says nothing of ground.
-        spl: Success weighted by path length.
-        casr: Of this mission: S · (1 − (CT + TT) / T_max).
+        spl: Success weighted by path length; None where nobody judges.
+        casr: Of this mission: S · (1 − (CT + TT) / T_max); likewise.
         path_length_m: Travelled.
         reference_length_m: Of the shortest compliant way; None where there is none.
         distance_to_goal_m: From the end to the nearest satisfying footprint; None where there is none.
@@ -289,11 +294,11 @@ class MissionSummary:
     end: MissionEnd
     reason: str
     declared: bool
-    success: bool
-    oracle_success: bool
+    success: bool | None
+    oracle_success: bool | None
     compliant: bool | None
-    spl: float
-    casr: float
+    spl: float | None
+    casr: float | None
     path_length_m: float
     reference_length_m: float | None
     distance_to_goal_m: float | None

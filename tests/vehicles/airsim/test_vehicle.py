@@ -310,3 +310,13 @@ def test_a_server_that_answers_steps_at_once_is_waited_for(served):
 
     assert flown(served, script).outcome is LegOutcome.ARRIVED
     assert len(asked) > 30
+
+
+def test_a_thought_that_was_longer_than_landing_may_take_is_not_counted_as_landing(atlas):
+    async def think_for_minutes(vehicle):
+        await asyncio.sleep(0.5)
+
+    with BackgroundServer(lambda: AirSimServer(atlas, HOME, speed=200.0)) as served:
+        flown(served, think_for_minutes, clock=RealClock(), settings=replace(BLIND, poll_s=0.05))
+        drone, now_s = drone_of(served)
+        assert drone.is_landed(now_s)

@@ -118,12 +118,28 @@ def test_a_bad_datagram_does_not_spoil_the_next(data):
     assert [one.get_type() for one in parser.feed(sound)] == ["HEARTBEAT"]
 
 
+def test_a_distance_sensor_tells_what_stands_ahead_as_long_as_it_tells():
+    mavlink, told = dialect(), Telemetry()
+
+    def sensed(cm, *, orientation=0):
+        return mavlink.MAVLink_distance_sensor_message(0, 20, 1000, cm, 0, 1, orientation, 255)
+
+    assert told.range_ahead_m(0.0) is None
+    told.take(sensed(430), 5.0)
+    told.take(sensed(90, orientation=25), 5.5)  # one that looks down
+    assert told.range_ahead_m(5.5) == pytest.approx(4.3)
+    assert told.range_ahead_m(6.5) is None
+    told.take(sensed(1000), 7.0)
+    assert told.range_ahead_m(7.0) == float("inf")
+
+
 @given(st.data())
 def test_telemetry_takes_whatever_a_message_holds(data):
     """Messages with any contents, under a right checksum: nothing is raised and nothing kept that is not finite."""
     mavlink, told, parser = dialect(), Telemetry(), Parser(datagrams=True)
     names = ("HEARTBEAT", "LOCAL_POSITION_NED", "GLOBAL_POSITION_INT", "ATTITUDE", "SYS_STATUS", "BATTERY_STATUS")
     names += ("GPS_RAW_INT", "EKF_STATUS_REPORT", "ESTIMATOR_STATUS", "EXTENDED_SYS_STATE", "STATUSTEXT")
+    names += ("DISTANCE_SENSOR",)
     for _ in range(3):
         name = data.draw(st.sampled_from(names))
         kind = getattr(mavlink, f"MAVLink_{name.lower()}_message")

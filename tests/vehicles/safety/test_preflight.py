@@ -19,7 +19,7 @@ from reasoned_explorer.vehicles.safety import (
 from tests.exploration.fakes import FakeVehicle
 
 FENCED = SafetyLimits(fence=Circle(0.0, 0.0, 50.0))
-GOOD = {"link_age_s": 0.1, "position": PositionVerdict(Grade.GOOD), "battery": 0.9}
+GOOD = {"link_age_s": 0.1, "position": PositionVerdict(Grade.GOOD), "battery": 0.9, "range_ahead_m": 12.3}
 
 
 class Machine(FakeVehicle):
@@ -50,7 +50,7 @@ def listed(*, image=None, told=None, limits=FENCED, broken=(), pressed=False, re
 
 def test_a_machine_that_is_fit_passes_all():
     items = listed()
-    assert list(items) == ["link", "position", "camera", "geofence", "battery", "limits", "stop switch"]
+    assert list(items) == ["link", "position", "camera", "geofence", "obstacles", "battery", "limits", "stop switch"]
     assert {item.verdict for item in items.values()} == {CheckVerdict.OK}
     assert items["camera"].seen == "224 × 224 pixels"
     assert not any(item.remedy for item in items.values())
@@ -87,12 +87,21 @@ def test_what_is_wrong_is_said_with_what_to_do(name, wrong):
     assert item.remedy
 
 
-@pytest.mark.parametrize("name", ["position", "battery", "link"])
+@pytest.mark.parametrize("name", ["position", "battery", "link", "obstacles"])
 def test_what_is_not_told_is_unknown(name):
-    silent = {"link_age_s": None, "position": None, "battery": None}
+    silent = {"link_age_s": None, "position": None, "battery": None, "range_ahead_m": None}
     item = listed(told=silent)[name]
     assert (item.verdict, bool(item.remedy)) == (CheckVerdict.UNKNOWN, True)
     assert listed(limits=SafetyLimits())["geofence"].verdict is CheckVerdict.UNKNOWN
+
+
+def test_what_looks_ahead_is_told_and_that_nothing_does():
+    assert listed()["obstacles"].seen == "something 12.3 m ahead"
+    assert listed(told={"range_ahead_m": float("inf")})["obstacles"].seen == "nothing in sight ahead"
+    blind = listed(told={"range_ahead_m": None})["obstacles"]
+    assert blind.seen == "no range ahead: obstacles are not seen"
+    by_the_world = listed(told={"range_ahead_m": None}, range_ahead_m=lambda pose: 4.0)["obstacles"]
+    assert (by_the_world.verdict, by_the_world.seen) == (CheckVerdict.OK, "something 4.0 m ahead")
 
 
 def test_without_a_link_the_rest_is_not_asked():

@@ -17,7 +17,8 @@ from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model.checks import is_within
 from reasoned_explorer.model.errors import PartError
 from reasoned_explorer.vehicles.airsim import conventions as conv
-from reasoned_explorer.vehicles.airsim.pictures import ImageType, colour_of
+from reasoned_explorer.vehicles.airsim.corridor import Corridor
+from reasoned_explorer.vehicles.airsim.pictures import ImageType, colour_of, depth_of
 from reasoned_explorer.vehicles.airsim.rpc import Pending, RpcClient
 
 T = TypeVar("T")
@@ -169,6 +170,32 @@ class AirSimApi:
         """Return how far something stands before a distance sensor, metres."""
         told = await self.client.call("getDistanceSensorData", sensor, self.name)
         return _read("getDistanceSensorData", lambda: _metres(told["distance"]))
+
+    async def depth_ahead_m(self, camera: str, corridor: Corridor) -> float:
+        """Return how far ahead, in the vehicle's heading, a depth picture of a camera shows something, metres."""
+        more = {"annotation_name": ""} if self.is_cosys else {}
+        wanted = {
+            "camera_name": camera,
+            "image_type": int(ImageType.DEPTH_PLANAR),
+            "pixels_as_float": True,
+            "compress": False,
+            **more,
+        }
+        body = await self.true_pose()
+        view = await self.camera(camera)
+        answers = await self.client.call("simGetImages", [wanted], self.name, *self._external)
+
+        def free_m() -> float:
+            (answer,) = answers
+            return corridor.free_m(
+                depth_of(answer),
+                fov_rad=view.fov_rad,
+                camera=conv.attitude(answer["camera_orientation"]),
+                heading_rad=body.heading_rad,
+                height_m=view.pose.z_m,
+            )
+
+        return _read("simGetImages", free_m)
 
     # What it sees.
 

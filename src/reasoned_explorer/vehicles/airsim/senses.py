@@ -3,8 +3,12 @@
 from reasoned_explorer.clock import Clock
 from reasoned_explorer.model.errors import PartError
 from reasoned_explorer.vehicles.airsim.api import AirSimApi, Moment
+from reasoned_explorer.vehicles.airsim.corridor import Corridor
 from reasoned_explorer.vehicles.airsim.settings import DriverSettings
 from reasoned_explorer.vehicles.safety.telemetry import Telemetry
+
+#: What a small drone goes through.
+CORRIDOR = Corridor()
 
 
 class Senses:
@@ -18,15 +22,18 @@ class Senses:
 
     def __init__(self, api: AirSimApi, settings: DriverSettings, clock: Clock) -> None:
         self._api, self._settings, self._clock = api, settings, clock
-        self._reads_gps = settings.reads_gps
+        self._reads_gps, self._reads_depth = settings.reads_gps, True
         self._fix_s: float | None = None
         self._range_m: float | None = None
         #: Whether news is asked for all the time, and when it last came, on the mission's clock.
         self.is_listening = False
         self._heard_s = 0.0
 
-    async def read(self) -> None:
+    async def read(self, *, ranges: bool = True) -> None:
         """Ask for the news.
+
+        Args:
+            ranges: Whether to ask what stands ahead, too: a depth picture takes some time.
 
         Raises:
             PartError: If the link fails, or there is no such distance sensor.
@@ -38,8 +45,21 @@ class Senses:
                 if "refused" not in fault.reason:
                     raise
                 self._reads_gps, self._fix_s = False, None
-        if self._settings.range_sensor is not None:
-            self._range_m = await self._api.range_m(self._settings.range_sensor)
+        if ranges:
+            self._range_m = await self._ahead_m()
+
+    async def _ahead_m(self) -> float | None:
+        """Return how far it is to what stands ahead; None where nothing tells."""
+        sensor, camera = self._settings.range_sensor, self._settings.range_camera
+        told_m = [] if sensor is None else [await self._api.range_m(sensor)]
+        if camera is not None and self._reads_depth:
+            try:
+                told_m.append(await self._api.depth_ahead_m(camera, CORRIDOR))
+            except PartError as fault:
+                if "refused" not in fault.reason:
+                    raise
+                self._reads_depth = False  # the simulator has no such camera, or no depth
+        return min(told_m, default=None)
 
     def hear(self, *, listening: bool) -> None:
         """Note that the drone was heard of, and whether it will be asked on."""

@@ -27,6 +27,8 @@ class DriverSettings:
         deadline_s: How long an answer may take, real seconds.
         reads_gps: Whether to ask, on the way, for the age of the last fix; no more where the simulator has no receiver.
         range_sensor: Name of a distance sensor that looks ahead, "" for the only one; None for none.
+        range_camera: Name of a camera whose depth pictures tell how far it is to what stands ahead; None for none.
+            Where a distance sensor is named too, the nearer counts.
 
     Raises:
         SettingsError: If one is out of range.
@@ -46,6 +48,7 @@ class DriverSettings:
     deadline_s: float = 10.0
     reads_gps: bool = True
     range_sensor: str | None = None
+    range_camera: str | None = None
 
     def __post_init__(self) -> None:
         ranges = {

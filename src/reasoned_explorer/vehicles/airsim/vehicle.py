@@ -99,7 +99,7 @@ class AirSimVehicle(Vehicle):
 
     async def refresh(self) -> None:
         """Ask where the vehicle is, and what it knows of itself."""
-        await self._catch_up()
+        await self._catch_up(ranges=True)
 
     async def halt(self) -> None:
         """Hover, whatever it was doing."""
@@ -259,16 +259,16 @@ class AirSimVehicle(Vehicle):
     def _settle_s(self) -> float:
         return self.profile.settle_s if self.settings.settle_s is None else self.settings.settle_s
 
-    async def _catch_up(self) -> Pose:
+    async def _catch_up(self, *, ranges: bool = False) -> Pose:
         """Have passed in the simulator what has passed on the mission's clock; return where the vehicle truly is."""
         await self._pace.catch_up()
-        self._moment, true = await self._pace.talk(self._both)
+        self._moment, true = await self._pace.talk(lambda: self._both(ranges=ranges))
         self._senses.hear(listening=False)
         return true
 
     async def _see(self) -> Pose:
         """Find out where the vehicle believes to be, charge the time since this was last done; return the truth."""
-        moment, true = await self._pace.talk(self._both)
+        moment, true = await self._pace.talk(lambda: self._both(ranges=self._senses.is_listening))
         elapsed_s = moment.t_s - self._moment.t_s if self._moment.t_s > 0.0 else 0.0
         self._moment = moment
         self._senses.hear(listening=self._senses.is_listening)
@@ -276,8 +276,8 @@ class AirSimVehicle(Vehicle):
             await self._pace.charge(elapsed_s)
         return true
 
-    async def _both(self) -> tuple[Moment, Pose]:
-        await self._senses.read()
+    async def _both(self, *, ranges: bool) -> tuple[Moment, Pose]:
+        await self._senses.read(ranges=ranges)
         return await self.api.moment(), await self.api.true_pose()
 
     async def _finish(self, pending: Pending, what: str) -> None:
@@ -286,7 +286,8 @@ class AirSimVehicle(Vehicle):
         Raises:
             PartError: If it does not.
         """
-        begun_s = self._moment.t_s
+        # What was last heard may be from before a long thought.
+        begun_s = (await self._pace.talk(self.api.moment)).t_s
         while not pending.answered:
             await self._pace.until(pending, self.settings.poll_s)
             await self._see()

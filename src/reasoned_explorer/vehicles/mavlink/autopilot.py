@@ -38,7 +38,7 @@ _CUSTOM_MODE = 1
 #: How long it may take until anything is heard of an autopilot that is asked for positions all the time, seconds.
 _HEAR_S = 1.0
 #: Messages asked for at the rate of positions, and once a second, by their numbers.
-_OFTEN = (24, 30, 32, 33)
+_OFTEN = (24, 30, 32, 33, 132)
 _SELDOM = (1, 147, 193, 230, 245)
 _REAL32 = 9
 
@@ -302,6 +302,11 @@ class Autopilot:
     @property
     def _to(self) -> tuple[int, int]:
         return self._target or (0, 0)
+
+    @property
+    def range_ahead_m(self) -> float | None:
+        """How far it is to what stands ahead, by a distance sensor of the machine; None where there is none."""
+        return self.telemetry.range_ahead_m(self.now_s())
 
     def now_s(self) -> float:
         """Return the time by which it is judged whether anybody is heard, seconds; safe from any thread."""

@@ -149,7 +149,7 @@ class Manoeuvres:
         Raises:
             PartError: If that does not come about, the link is lost or somebody else has taken over.
         """
-        begun_s = self.moment.t_s
+        begun_s = self._pace.moment().t_s  # what was last heard may be from before a long thought
         while True:
             await self._pace.until_idle(self._settings.poll_s)
             await self.see()

@@ -31,6 +31,7 @@ def news(autopilot: Autopilot, moment: Moment, *, lived: bool) -> Telemetry:
         position_age_s=max(ages_s, default=None),
         position=verdict_on(told.position, worst_error_m=autopilot.settings.worst_error_m),
         battery=told.battery.remaining,
+        range_ahead_m=autopilot.range_ahead_m,
     )
 
 

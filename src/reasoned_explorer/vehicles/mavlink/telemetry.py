@@ -21,6 +21,8 @@ _ON_GROUND = 1
 _2D_FIX = 2
 #: Messages that tell the autopilot's own time.
 _TIMED = frozenset({"ATTITUDE", "LOCAL_POSITION_NED", "GLOBAL_POSITION_INT"})
+#: DISTANCE_SENSOR: one that looks ahead; what it told counts for so long, seconds.
+_AHEAD, _RANGE_AGE_S = 0, 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,6 +124,8 @@ class Telemetry:
         self.battery = Battery(None, None)
         self.position = PositionQuality()
         self.is_landed: bool | None = None
+        #: To what stands ahead, metres, infinite for nothing in reach, and when that was told; None where nobody tells.
+        self.ahead: tuple[float, float] | None = None
         #: The last texts that say that something is wrong, oldest first.
         self.texts: tuple[str, ...] = ()
         self.texts_seen = 0
@@ -187,6 +191,18 @@ class Telemetry:
         if message.landed_state != 0:
             self.is_landed = message.landed_state == _ON_GROUND
 
+    def _distance(self, message: Any, now_s: float) -> None:
+        if message.orientation != _AHEAD:
+            return
+        is_free = message.current_distance >= message.max_distance
+        self.ahead = math.inf if is_free else message.current_distance / 100.0, now_s
+
+    def range_ahead_m(self, now_s: float) -> float | None:
+        """Return how far it is to what stands ahead, metres; None where that is not told, or was long ago."""
+        if self.ahead is None or now_s - self.ahead[1] > _RANGE_AGE_S:
+            return None
+        return self.ahead[0]
+
     def _text(self, message: Any, _: float) -> None:
         if _WORST <= message.severity <= _ERROR:
             self.texts = (*self.texts[-19:], text_of(message.text))
@@ -205,6 +221,7 @@ _READERS = {
     "ESTIMATOR_STATUS": Telemetry._filter,
     "EXTENDED_SYS_STATE": Telemetry._landed,
     "STATUSTEXT": Telemetry._text,
+    "DISTANCE_SENSOR": Telemetry._distance,
 }
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.vehicles.control import kernels
 from reasoned_explorer.vehicles.control.localization import PoseFilter
-from reasoned_explorer.vehicles.positioning import wander
+from reasoned_explorer.vehicles.positioning import abrupt, wander
 from reasoned_explorer.vehicles.positioning.fix import Fix, FixQuality
 from reasoned_explorer.vehicles.positioning.measurements import CompassReading, ImuSample, OdometryReading
 from reasoned_explorer.vehicles.positioning.receivers import ReceiverModel
@@ -89,6 +89,8 @@ class Track:
         self.imu_s = -math.inf
         self._imu = ImuSample(-math.inf, 0.0)
         self._odometry_s = -math.inf
+        self._refused: OdometryReading | None = None  # the last one, where that was refused
+        self._moving_s = -math.inf  # when odometry was last believed
         self._receiver = settings.receivers[FixQuality.SINGLE]
         self._heading: tuple[float, float] | None = None  # with its sigma, until the filter begins
 
@@ -168,7 +170,7 @@ class Track:
         self._odometry_s = reading.time_s
         if self.filter is None:
             return
-        self.filter.odometry(reading.forward_mps, reading.right_mps, sigma_mps=self.settings.odometry_sigma_mps)
+        self._take_velocity(self.filter, reading)
         alone_s = min(reading.time_s - self.believed_s, _LONGEST_ALONE_S)
         if alone_s > _SOON_S:
             # A wrong scale is wrong the same way each time: the error grows with the way, not with its root.
@@ -176,6 +178,16 @@ class Track:
             growth = 2.0 * alone_s * every_s * self.settings.odometry_scale_sigma**2
             way = state[[kernels.EKF_VX, kernels.EKF_VY]]
             cov[kernels.EKF_X : kernels.EKF_Y + 1, kernels.EKF_X : kernels.EKF_Y + 1] += growth * np.outer(way, way)
+
+    def _take_velocity(self, filter_: PoseFilter, reading: OdometryReading) -> None:
+        """Take in a velocity. Two refused ones in a row that agree mean that the machine stopped or set off at once."""
+        sigma_mps, last = self.settings.odometry_sigma_mps, self._refused
+        believed = filter_.odometry(reading.forward_mps, reading.right_mps, sigma_mps=sigma_mps)
+        if not believed and last is not None and abrupt.agree(last, reading, sigma_mps):
+            abrupt.allow(filter_, reading, reading.time_s - self._moving_s)
+            believed = filter_.odometry(reading.forward_mps, reading.right_mps, sigma_mps=sigma_mps)
+        self._refused = None if believed else reading
+        self._moving_s = reading.time_s if believed else self._moving_s
 
     def _take_fix(self, fix: Fix) -> None:
         last, self.quality = self.quality, fix.quality

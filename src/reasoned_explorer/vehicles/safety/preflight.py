@@ -13,6 +13,7 @@ from reasoned_explorer.vehicles.safety.area import AllowedGround
 from reasoned_explorer.vehicles.safety.limits import SafetyLimits, limited_profile, stopping_m
 from reasoned_explorer.vehicles.safety.operator_stop import OperatorStop
 from reasoned_explorer.vehicles.safety.telemetry import Refreshes, Telemetry, telemetry_of
+from reasoned_explorer.vehicles.safety.watch import RangeAhead
 from reasoned_explorer.vehicles.vehicle import Vehicle
 
 #: A picture narrower or lower than this shows nothing to a model, pixels.
@@ -56,6 +57,7 @@ async def preflight(
     *,
     stop: OperatorStop,
     keep_out_at: Callable[[float, float], bool] | None = None,
+    range_ahead_m: RangeAhead | None = None,
     pictures_vary: bool = False,
 ) -> tuple[CheckItem, ...]:
     """Go through the list with a machine that is connected or started; nothing is moved but what turns to look ahead.
@@ -65,11 +67,12 @@ async def preflight(
         limits: What it may do.
         stop: The operator's.
         keep_out_at: Says of a point whether it must not be gone to.
+        range_ahead_m: Says how far something stands before a pose, where the guard is given that.
         pictures_vary: Whether two pictures from one place differ, as those of real cameras do: equal ones are frozen.
     """
     link = await _link(vehicle)
     if link.verdict is CheckVerdict.FAULT:
-        rest = ("position", "camera", "geofence", "battery")
+        rest = ("position", "camera", "geofence", "obstacles", "battery")
         unseen = tuple(CheckItem(name, CheckVerdict.UNKNOWN, "no link", "mend the link first") for name in rest)
         return (link, *unseen, _limits(vehicle, limits), _stop(stop))
     told = telemetry_of(vehicle)
@@ -78,6 +81,7 @@ async def preflight(
         _position(told, limits),
         await _camera(vehicle, pictures_vary=pictures_vary),
         _fence(told, AllowedGround(limits.fence, limits.keep_out, keep_out_at, limits.margin_m)),
+        _obstacles(told, range_ahead_m),
         _battery(told, limits),
         _limits(vehicle, limits),
         _stop(stop),
@@ -162,6 +166,16 @@ def _fence(told: Telemetry, ground: AllowedGround) -> CheckItem:
     if ground.fence is None:
         return CheckItem("geofence", CheckVerdict.UNKNOWN, "there is none", "set one: it may go anywhere")
     return CheckItem("geofence", CheckVerdict.OK, f"{clear_m:.1f} m to the nearest edge")
+
+
+def _obstacles(told: Telemetry, range_ahead_m: RangeAhead | None) -> CheckItem:
+    ranges = [told.range_ahead_m, None if range_ahead_m is None else range_ahead_m(told.pose)]
+    near_m = min((each for each in ranges if each is not None and not math.isnan(each)), default=None)
+    if near_m is None:
+        seen, remedy = "no range ahead: obstacles are not seen", "watch the way yourself, the stop switch at hand"
+        return CheckItem("obstacles", CheckVerdict.UNKNOWN, seen, remedy)
+    seen = "nothing in sight ahead" if math.isinf(near_m) else f"something {near_m:.1f} m ahead"
+    return CheckItem("obstacles", CheckVerdict.OK, seen)
 
 
 def _battery(told: Telemetry, limits: SafetyLimits) -> CheckItem:
