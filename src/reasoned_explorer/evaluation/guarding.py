@@ -10,6 +10,7 @@ from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Fault, SettingsError
 from reasoned_explorer.model.checks import is_within
 from reasoned_explorer.model.record import CallRecord
+from reasoned_explorer.serving.go1.gnss import NOWHERE
 from reasoned_explorer.simulation.eyes import Eyes
 from reasoned_explorer.simulation.pixel_eyes import PixelEyes
 from reasoned_explorer.vehicles.safety.area import Circle
@@ -61,11 +62,14 @@ class Guarding:
         settings, content = mission.settings, None
         shows = is_model_name(settings.captioner) or mission.keeps_pictures
         if shows and not self.address.has_camera:
-            fault = Fault(f"no pictures come from {self.address}", "a simulated captioner", "and no --images")
+            expected = "a simulated captioner and no --images"
+            remedy = "or give a --camera, where its wire has none"
+            fault = Fault(f"no pictures come from {self.address}", expected, remedy)
             raise SettingsError("vehicle", [fault])
         if not is_model_name(settings.captioner):
             content = (PixelEyes if settings.eyes == "pixels" else Eyes)(mission.atlas).look
-        errand = Errand(mission.clock, mission.start, shows, content, self.may_move)
+        origin = mission.atlas.world.origin or NOWHERE
+        errand = Errand(mission.clock, mission.start, shows, content, self.may_move, origin, settings.picture_px)
         return guarded(
             lambda profile: self.address.vehicle(profile, errand),
             mission.profile,

@@ -12,7 +12,7 @@ from reasoned_explorer.geometry.frames import is_finite
 from reasoned_explorer.model import Fault, Leg, LegOutcome, PartError, SettingsError, View
 from reasoned_explorer.vehicles.airsim.conventions import HomeFrame
 from reasoned_explorer.vehicles.control.legs import LegWatch
-from reasoned_explorer.vehicles.looking import Content, turning_order
+from reasoned_explorer.vehicles.looking import Content, close_camera, open_camera, picture_age_s, turning_order
 from reasoned_explorer.vehicles.mavlink.address import Address
 from reasoned_explorer.vehicles.mavlink.autopilot import PART, Autopilot
 from reasoned_explorer.vehicles.mavlink.endings import crash_told, ending
@@ -91,7 +91,8 @@ class MavlinkVehicle(Vehicle):
 
     def telemetry(self) -> Telemetry:
         """Return what a guard is told; a lost link and a poor position are seen to by driver and autopilot."""
-        return Telemetry(self.pose, t_s=self._moment.t_s, battery=self.battery.remaining)
+        age_s = picture_age_s(self._camera)
+        return Telemetry(self.pose, t_s=self._moment.t_s, battery=self.battery.remaining, picture_age_s=age_s)
 
     @property
     def position_quality(self) -> PositionQuality:
@@ -124,6 +125,7 @@ class MavlinkVehicle(Vehicle):
         """
         if not self._is_connected:
             self._is_connected = True
+            open_camera(self._camera)
             await self._pace.talk(self.autopilot.connect)
 
     async def start(self) -> None:
@@ -165,6 +167,7 @@ class MavlinkVehicle(Vehicle):
         Raises:
             PartError: If the vehicle may still be moving: the link is lost, or it does not land.
         """
+        close_camera(self._camera)
         if not self._is_connected:
             return
         was_up, self._is_up, self._is_connected = self._is_up, False, False

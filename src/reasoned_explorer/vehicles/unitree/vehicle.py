@@ -12,7 +12,7 @@ from reasoned_explorer.clock.live_thread import Stopwatch, begin_live
 from reasoned_explorer.geometry import Pose, normalise_heading_rad
 from reasoned_explorer.geometry.frames import is_finite
 from reasoned_explorer.model import Fault, Leg, LegOutcome, PartError, SettingsError, View
-from reasoned_explorer.vehicles.looking import Content, turning_order
+from reasoned_explorer.vehicles.looking import Content, close_camera, open_camera, picture_age_s, turning_order
 from reasoned_explorer.vehicles.profile import VehicleProfile
 from reasoned_explorer.vehicles.unitree.go1_robot import Go1Robot
 from reasoned_explorer.vehicles.unitree.legs import LegLog
@@ -129,6 +129,11 @@ class UnitreeVehicle(Vehicle):
         """The hottest motor, degrees centigrade; None where it is not known."""
         return None if self.reading is None else self.reading.hottest_motor_c
 
+    @property
+    def picture_age_s(self) -> float | None:
+        """Seconds since its camera's newest picture; None where it does not tell."""
+        return picture_age_s(self._camera)
+
     # What it does.
 
     async def start(self) -> None:
@@ -138,12 +143,14 @@ class UnitreeVehicle(Vehicle):
             PartError: If it is not heard or does not get up.
         """
         await self._talk(self._tracker.start)
+        open_camera(self._camera)
         self._is_up = True
         self._known_s, self._robot_known_s = self._clock.now_s(), 0.0
         await self._charge()
 
     async def close(self) -> None:
         """Leave it standing, or lying, and hang up. Safe to call twice."""
+        close_camera(self._camera)
         if not self._is_up:
             return
         self._is_up = False
