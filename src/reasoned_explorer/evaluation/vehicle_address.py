@@ -215,6 +215,11 @@ class Go1Address:
         """They do not come over this wire."""
         return self.equipment.camera is not None
 
+    @property
+    def looks_ahead(self) -> bool:
+        """Its states hold a distance, but nobody has tried what that is worth."""
+        return False
+
     def vehicle(self, profile: VehicleProfile, errand: Errand) -> Vehicle:
         """Return the driver."""
         from reasoned_explorer.vehicles.unitree.link import LinkSettings

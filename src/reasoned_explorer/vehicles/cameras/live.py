@@ -131,11 +131,13 @@ class LiveCamera:
     # In the thread.
 
     def _read_on(self, is_over: threading.Event) -> None:
+        import av
+
         while not is_over.is_set():
             try:
                 self._fault = self._read(is_over)
-            except (OSError, ValueError, LookupError) as error:
-                # FFmpeg's errors are some of these. Their whole text holds the address with the password.
+            except (av.FFmpegError, OSError, ValueError, LookupError) as error:
+                # The whole text of FFmpeg's errors holds the address, with the password.
                 self._fault = str(getattr(error, "strerror", None) or type(error).__name__)
             is_over.wait(self.settings.again_s)
 

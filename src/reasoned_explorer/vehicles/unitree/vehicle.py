@@ -130,6 +130,11 @@ class UnitreeVehicle(Vehicle):
         return None if self.reading is None else self.reading.hottest_motor_c
 
     @property
+    def t_s(self) -> float | None:
+        """When the robot was as it is believed to be, on its own time; None before the start."""
+        return None if self.reading is None else self.reading.time_s
+
+    @property
     def picture_age_s(self) -> float | None:
         """Seconds since its camera's newest picture; None where it does not tell."""
         return picture_age_s(self._camera)
