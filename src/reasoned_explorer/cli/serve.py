@@ -89,7 +89,9 @@ class ServeOptions:
         bbox = found.take(lambda: parse_bbox(self.bbox), None)
         found.check(lambda: check_world_name(self.world, seed=max(self.seed, 0), bbox=bbox))
         found.check(lambda: check_start_form(self.start))
-        found.check(lambda: vehicle_profile(self.profile))
+        profile = found.take(lambda: vehicle_profile(self.profile), None)
+        if self.as_ == "go1" and profile is not None and profile.flies:
+            found.add(SettingsError("--vehicle", [Fault(f"{self.profile!r} does not walk", "the profile of a walker")]))
         found.check(lambda: sensor_noise(self.noise))
         speed = found.take(lambda: _speed(self.speed), None)
         if self.as_ == "go1" and speed not in {None, 1.0, AS_FAST_AS_ASKED}:
