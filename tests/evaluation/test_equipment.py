@@ -1,16 +1,22 @@
 """What a machine has beside its wire, as a person writes it."""
 
+import asyncio
 import math
+import os
 import re
+import socket
+from contextlib import aclosing
 
 import pytest
 
 from reasoned_explorer.evaluation.equipment import Equipment, read_equipment
 from reasoned_explorer.evaluation.vehicle_address import AirSimAddress, Go1Address, MavlinkAddress, equipped
+from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Gathering, SettingsError
 from reasoned_explorer.vehicles.cameras import RtspSource
 from reasoned_explorer.vehicles.mavlink.address import Address, Wire
-from reasoned_explorer.vehicles.positioning import GpsdSource, NtripSource, SerialSource
+from reasoned_explorer.vehicles.positioning import Fix, GpsdSource, NtripSource, SerialSource
+from tests.vehicles.positioning.sentences import ORIGIN, epoch
 
 GO1 = Go1Address("127.0.0.1")
 ROVER = MavlinkAddress(Address(Wire.TCP, "127.0.0.1", 5760), "go1")
@@ -75,3 +81,38 @@ def test_what_a_wire_brings_itself_is_refused_beside_it():
     assert not ROVER.has_camera
     assert equipped(ROVER, Equipment(camera=CAMERA)).has_camera
     assert equipped(AirSimAddress("127.0.0.1"), Equipment()) == AirSimAddress("127.0.0.1")
+
+
+def test_a_caster_that_cannot_be_reached_is_said_once_and_positions_go_on(monkeypatch):
+    pytest.importorskip("serial", reason="pyserial is not installed (the extra `vehicles`)")
+    pytest.importorskip("pynmea2", reason="pynmea2 is not installed (the extra `vehicles`)")
+    monkeypatch.setenv("NTRIP_PASSWORD", "open-sesame")
+    near, far = os.openpty()
+    said: list[str] = []
+    with socket.socket() as unused:
+        unused.bind(("127.0.0.1", 0))
+        caster = f"ntrip://127.0.0.1:{unused.getsockname()[1]}/A"
+        equipment, wrong = read(gps=f"serial:{os.ttyname(far)}:38400", ntrip=caster, say=said.append)
+        assert not wrong
+
+        async def run() -> Fix:
+            receiver = equipment.receiver(Pose(5.0, 0.0), ORIGIN, lambda: 0.0)
+            assert receiver is not None
+            async with asyncio.timeout(30.0), aclosing(receiver.fixes()) as fixes:
+                first = asyncio.ensure_future(anext(fixes))
+                while not said:
+                    await asyncio.sleep(0.02)
+                os.write(near, epoch(43_201.0, 5.0, 0.0))
+                os.write(near, epoch(43_202.0, 6.0, 0.0))
+                return await first
+
+        try:
+            fix = asyncio.run(run())
+        finally:
+            os.close(near)
+            os.close(far)
+    assert fix.x_m == pytest.approx(5.0, abs=0.01)
+    assert len(said) == 1
+    assert "cannot be reached" in said[0]
+    assert "positions go on" in said[0]
+    assert "sesame" not in said[0]
