@@ -19,6 +19,8 @@ INSTALL = "pip install 'reasoned-explorer[cameras]'"
 _PART = "camera"
 #: So often a reader that waits looks whether it is to end, or a person who waits whether there is a frame, seconds.
 _CHECK_S = 0.1
+#: So long whoever closes it waits for its reader, seconds.
+_LEAVE_S = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,8 +102,10 @@ class LiveCamera:
         reading, self._reading = self._reading, None
         if reading is not None:
             reading[1].set()
-            reading[0].join(self.settings.silence_s + 1.0)
-        self._frame, self._taken_s = None, -math.inf
+            # One that hears nothing ends by itself when it has been silent for long enough, and keeps nothing more.
+            reading[0].join(_LEAVE_S)
+        with self._fresh:
+            self._frame, self._taken_s = None, -math.inf
 
     def picture(self) -> NDArray[np.uint8]:
         """Return what it shows now, RGB, shape (height, width, 3); never what it showed before it was asked.
@@ -162,11 +166,13 @@ class LiveCamera:
                 except av.InvalidDataError:
                     continue  # a part was lost on the way; the next whole picture is not far
                 for frame in frames:
-                    self._keep(frame, stamper.taken_s(frame.time, self._now_s()))
+                    self._keep(frame, stamper.taken_s(frame.time, self._now_s()), is_over)
         return "the stream has ended"
 
-    def _keep(self, frame: Any, taken_s: float) -> None:
+    def _keep(self, frame: Any, taken_s: float, is_over: threading.Event) -> None:
         with self._fresh:
+            if is_over.is_set():
+                return
             self._frame, self._taken_s = frame, taken_s
             self._fault = ""
             self._fresh.notify_all()

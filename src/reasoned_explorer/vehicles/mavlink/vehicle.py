@@ -167,7 +167,6 @@ class MavlinkVehicle(Vehicle):
         Raises:
             PartError: If the vehicle may still be moving: the link is lost, or it does not land.
         """
-        close_camera(self._camera)
         if not self._is_connected:
             return
         was_up, self._is_up, self._is_connected = self._is_up, False, False
@@ -181,6 +180,7 @@ class MavlinkVehicle(Vehicle):
                 self._is_paced = False
                 await self._pace.end()
         finally:
+            close_camera(self._camera)
             await self._pace.talk(self.autopilot.close)
 
     async def _leave_safe(self) -> None:

@@ -155,11 +155,12 @@ class UnitreeVehicle(Vehicle):
 
     async def close(self) -> None:
         """Leave it standing, or lying, and hang up. Safe to call twice."""
-        close_camera(self._camera)
-        if not self._is_up:
-            return
-        self._is_up = False
-        await self._talk(self._tracker.close)
+        try:
+            if self._is_up:
+                self._is_up = False
+                await self._talk(self._tracker.close)
+        finally:
+            close_camera(self._camera)
 
     async def look(self, headings_rad: Sequence[float]) -> Sequence[View]:
         """Turn to each heading and take a view; keys are (legs so far, looks since the last leg, index).
