@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 
 from reasoned_explorer.evaluation.vehicle_address import (
     AirSimAddress,
+    Go1Address,
     MavlinkAddress,
     VehicleAddress,
     start_at,
@@ -29,6 +30,8 @@ HERE = AirSimAddress("127.0.0.1")
         ("airsim://[::1]:9", AirSimAddress("::1", 9)),
         ("mavlink:udpin:192.168.1.2:14550", MavlinkAddress(Address(Wire.UDP_IN, "192.168.1.2", 14550))),
         ("go1@mavlink:/dev/ttyACM0:57600", MavlinkAddress(Address(Wire.SERIAL, "/dev/ttyACM0", 57600), "go1")),
+        ("go1://192.168.123.161", Go1Address("192.168.123.161", 8082)),
+        ("go1-authors@go1://[::1]:9", Go1Address("::1", 9, "go1-authors")),
         ("drone-authors@airsim://127.0.0.1", AirSimAddress("127.0.0.1", 41451, "drone-authors")),
     ],
 )
@@ -59,6 +62,10 @@ def test_the_name_of_a_profile_is_none(name: str) -> None:
         "mavlink:udpin:host",
         "nobody@mavlink:tcp:host:5760",
         "go1@airsim://host",
+        "go1://",
+        "go1:host",
+        "go1://host:0",
+        "drone@go1://host",
         "nobody@airsim://host",
         "airsim://[::1",
     ],
@@ -74,6 +81,7 @@ def test_any_text_is_an_address_or_none_or_refused(text: str) -> None:
         vehicle_address(text)
         vehicle_address(f"airsim://{text}")
         vehicle_address(f"mavlink:{text}")
+        vehicle_address(f"go1://{text}")
     except InputError:
         pass
 
@@ -90,3 +98,4 @@ def test_a_mission_begins_where_the_vehicle_stands_in_its_world() -> None:
 def test_only_what_may_be_real_asks_whether_it_may_move() -> None:
     assert not HERE.may_be_real
     assert MavlinkAddress(Address(Wire.TCP, "127.0.0.1", 5760)).may_be_real
+    assert Go1Address("127.0.0.1").may_be_real

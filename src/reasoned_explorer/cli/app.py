@@ -12,7 +12,7 @@ from reasoned_explorer.cli.look_app import add_look
 from reasoned_explorer.cli.minds_app import minds_app
 from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices, SampleAnew, Yes
 from reasoned_explorer.cli.serve_app import add_serve
-from reasoned_explorer.cli.vehicles_app import Fence, MaxSpeed, vehicles_app
+from reasoned_explorer.cli.vehicles_app import CameraAt, CameraFov, Fence, Gps, MaxSpeed, Ntrip, vehicles_app
 from reasoned_explorer.cli.worlds_app import worlds_app
 
 app = typer.Typer(
@@ -80,9 +80,13 @@ def run(
         str,
         typer.Option(
             help="A vehicle profile (see rex names), or where a vehicle is reached: airsim://HOST:41451, "
-            "mavlink:udpin:0.0.0.0:14550 …"
+            "mavlink:udpin:0.0.0.0:14550, go1://192.168.123.161 …"
         ),
     ] = "drone",
+    gps: Gps = None,
+    ntrip: Ntrip = None,
+    camera: CameraAt = None,
+    camera_fov: CameraFov = None,
     fence: Fence = None,
     max_speed: MaxSpeed = None,
     dry_run: Annotated[
@@ -162,7 +166,16 @@ def run(
             checker=checker,
             captioner=captioner,
             vehicle=VehicleOptions(
-                vehicle, fence_m=fence, max_speed_mps=max_speed, dry_run=dry_run, confirm=confirm, move=move
+                vehicle,
+                fence_m=fence,
+                max_speed_mps=max_speed,
+                dry_run=dry_run,
+                confirm=confirm,
+                move=move,
+                gps=gps,
+                ntrip=ntrip,
+                camera=camera,
+                camera_fov_deg=camera_fov,
             ),
             latency=latency,
             clock=clock,

@@ -52,6 +52,7 @@ PARTS = (
         "pip install 'reasoned-explorer[gym]'",
         core=False,
     ),
+    Part("av", "av", "cameras, /dev/video0 or rtsp://", "pip install 'reasoned-explorer[cameras]'", core=False),
     Part("torch", "torch", "models on this machine, hf:NAME", "pip install 'reasoned-explorer[local]'", core=False),
     Part(
         "transformers",
@@ -121,7 +122,7 @@ def print_report() -> None:
         missing_core += part.core
         say(f"  {'MISSING' if part.core else 'optional'}  {part.package}: {part.purpose}; get it with: {part.command}")
     say(_minds_line())
-    say("not there yet: AirSim, MAVLink, Unitree, ROS 2, the web page")
+    say("not there yet: ROS 2, the web page")
     if missing_core:
         say(f"{missing_core} needed packages are missing")
 

@@ -3,6 +3,8 @@
 import asyncio
 import ipaddress
 import math
+import shlex
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,18 +18,23 @@ from reasoned_explorer.model.stopping import on_stop, stop_if_asked
 from reasoned_explorer.serving.airsim.server import AS_FAST_AS_ASKED, AirSimServer
 from reasoned_explorer.serving.airsim.settings import AirSimSettings
 from reasoned_explorer.serving.background import Served
+from reasoned_explorer.serving.go1.gnss import GnssServer
+from reasoned_explorer.serving.go1.server import Go1Server
+from reasoned_explorer.serving.go1.walker import Walker
 from reasoned_explorer.simulation.sensors import sensor_noise
 from reasoned_explorer.simulation.vehicle import check_start
 from reasoned_explorer.vehicles import VehicleProfile
 from reasoned_explorer.vehicles.mavlink.flavours import FLAVOURS
 from reasoned_explorer.vehicles.registry import vehicle_profile
+from reasoned_explorer.vehicles.unitree.messages import HighCommand
 from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.opening import check_world_name, open_world_with_notes
 from reasoned_explorer.world.world import World
 
 #: Whose wires are spoken.
-WIRES = ("airsim", "mavlink")
-_PORTS = {"airsim": 41451, "mavlink": 14550}
+WIRES = ("airsim", "mavlink", "go1")
+_PORTS = {"airsim": 41451, "mavlink": 14550, "go1": 8082}
+_GPS_PORT = 2947
 _SPEEDS = (1e-3, 1e4)
 #: A free spot is looked for on rings around the middle, metres.
 _RING_M, _FARTHEST_M = 2.0, 400.0
@@ -52,12 +59,18 @@ class ServeOptions:
     conditions: str
     flavour: str = "arducopter"
     station: str | None = None
+    gps_port: int | None = None
 
     @property
     def profile(self) -> str:
         """Name of the vehicle's profile."""
         is_rover = self.as_ == "mavlink" and self.flavour in FLAVOURS and not FLAVOURS[self.flavour].flies
-        return self.vehicle or ("go1" if is_rover else "drone")
+        return self.vehicle or ("go1" if is_rover or self.as_ == "go1" else "drone")
+
+    @property
+    def receiver_port(self) -> int:
+        """Where a Go1's receiver is to listen: gpsd's port, or any that is free where the robot takes any, too."""
+        return (0 if self.port == 0 else _GPS_PORT) if self.gps_port is None else self.gps_port
 
     def checked(self) -> tuple[BoxDeg | None, float | None, AirSimSettings | None, tuple[str, int] | None]:
         """Return bounding box, speed, settings and ground station, once all has been checked that needs no world.
@@ -70,14 +83,20 @@ class ServeOptions:
             found.add(SettingsError("--as", [Fault(f"{self.as_!r:.60}", f"one of {', '.join(WIRES)}")]))
         if self.seed < 0:
             found.add(SettingsError("--seed", [Fault(str(self.seed), "0 or more")]))
-        if self.port is not None and not 0 <= self.port <= 65535:
-            found.add(SettingsError("--port", [Fault(str(self.port), "a port, 0 to 65535")]))
+        for name, port in (("--port", self.port), ("--gps-port", self.gps_port)):
+            if port is not None and not 0 <= port <= 65535:
+                found.add(SettingsError(name, [Fault(str(port), "a port, 0 to 65535")]))
         bbox = found.take(lambda: parse_bbox(self.bbox), None)
         found.check(lambda: check_world_name(self.world, seed=max(self.seed, 0), bbox=bbox))
         found.check(lambda: check_start_form(self.start))
-        found.check(lambda: vehicle_profile(self.profile))
+        profile = found.take(lambda: vehicle_profile(self.profile), None)
+        if self.as_ == "go1" and profile is not None and profile.flies:
+            found.add(SettingsError("--vehicle", [Fault(f"{self.profile!r} does not walk", "the profile of a walker")]))
         found.check(lambda: sensor_noise(self.noise))
         speed = found.take(lambda: _speed(self.speed), None)
+        if self.as_ == "go1" and speed not in {None, 1.0, AS_FAST_AS_ASKED}:
+            fault = Fault(f"{self.speed} as go1", "1, or max: as fast as its driver asks")
+            found.add(SettingsError("--speed", [fault]))
         path = self.settings
         settings = None if path is None else found.take(lambda: AirSimSettings.read(path), None)
         if self.flavour not in FLAVOURS:
@@ -100,16 +119,13 @@ def serve_from_options(options: ServeOptions) -> None:
     def say(line: str) -> None:
         console.print(line, markup=False, soft_wrap=True)
 
-    world, notes = open_world_with_notes(options.world, seed=options.seed, bbox=bbox)
-    for note in notes:
-        complain(f"note: {note}; choose a part with --bbox")
-    stop_if_asked()
-    atlas, profile = Atlas(world), vehicle_profile(options.profile)
-    start = parse_start(options.start, world)
-    if start is None:
-        start = free_spot(atlas, profile)
+    atlas = _atlas(options, bbox)
+    world, profile = atlas.world, vehicle_profile(options.profile)
+    start = parse_start(options.start, world) or free_spot(atlas, profile)
 
     def server() -> Served:
+        if options.as_ == "go1":
+            return go1_server(atlas, start, profile, options, is_stepped=speed == AS_FAST_AS_ASKED)
         if options.as_ == "mavlink":
             from reasoned_explorer.serving.mavlink.server import MavlinkServer
 
@@ -144,9 +160,8 @@ def serve_from_options(options: ServeOptions) -> None:
         loop, over = asyncio.get_running_loop(), asyncio.Event()
         try:
             port = await _listening(served, options, settings)
-            name = "AirSim" if options.as_ == "airsim" else f"an autopilot ({options.flavour}, UDP)"
-            say(f"{world.name} answers as {name} at {_shown(options.host)}:{port}; Ctrl-C ends it")
-            say(f"{profile.name} stands at {_in_words(start, world)}")
+            for line in _introduction(options, served, port, world, _in_words(start, world)):
+                say(line)
             if not _is_loopback(options.host):
                 complain("note: whoever reaches that address moves the vehicle")
             if world.attribution:
@@ -160,6 +175,14 @@ def serve_from_options(options: ServeOptions) -> None:
     stop_if_asked()
 
 
+def _atlas(options: ServeOptions, bbox: BoxDeg | None) -> Atlas:
+    world, notes = open_world_with_notes(options.world, seed=options.seed, bbox=bbox)
+    for note in notes:
+        complain(f"note: {note}; choose a part with --bbox")
+    stop_if_asked()
+    return Atlas(world)
+
+
 async def _listening(served: Served, options: ServeOptions, settings: AirSimSettings | None) -> int:
     port = options.port
     if port is None:
@@ -167,9 +190,62 @@ async def _listening(served: Served, options: ServeOptions, settings: AirSimSett
     try:
         return await served.start(options.host, port)
     except OSError as error:
+        name = "--port"
+        if isinstance(served, Go1Server) and served.has_link:
+            name, port = "--gps-port", options.receiver_port
         what = f"{_shown(options.host)}:{port} cannot be listened on ({error.strerror or error})"
-        fault = Fault(what, "a free port of this machine", "give another --port, or --port 0 for any that is free")
+        fault = Fault(what, "a free port of this machine", f"give another {name}, or {name} 0 for any that is free")
         raise SettingsError("rex serve", [fault]) from error
+
+
+def go1_server(
+    atlas: Atlas, start: Pose, profile: VehicleProfile, options: ServeOptions, *, is_stepped: bool
+) -> Go1Server:
+    """Return a Go1 with a receiver that speaks gpsd's protocol.
+
+    Args:
+        atlas: Of the world.
+        start: Where it stands.
+        profile: What it can do.
+        options: What a person typed.
+        is_stepped: Whether its time goes on by commands alone.
+    """
+    trial = Walker(atlas, profile, start)
+    trial.obey(HighCommand.walking(forward_mps=0.1))
+    trial.tick()  # what moves the body is compiled now, which takes a while on a fresh installation
+    walker = Walker(atlas, profile, start, noise=options.noise, seed=options.seed)
+    gnss = GnssServer(walker.noise, origin=atlas.world.origin)
+    return Go1Server(walker, gnss=gnss, lockstep=is_stepped, gnss_port=options.receiver_port)
+
+
+def _introduction(options: ServeOptions, served: Served, port: int, world: World, start: str) -> Iterator[str]:
+    """Say what answers where, and what to type."""
+    names = {"airsim": "AirSim", "mavlink": f"an autopilot ({options.flavour}, UDP)", "go1": "a Go1 (UDP)"}
+    yield f"{world.name} answers as {names[options.as_]} at {_shown(options.host)}:{port}; Ctrl-C ends it"
+    yield f"{options.profile} stands at {start}"
+    if isinstance(served, Go1Server):
+        yield f"its receiver answers as gpsd at {_shown(options.host)}:{served.gnss_port}"
+        yield f"try: {_command(options, served, port, start)}"
+
+
+def _command(options: ServeOptions, served: Go1Server, port: int, start: str) -> str:
+    """Return what to type for a mission with a served Go1."""
+    host = _shown("127.0.0.1" if options.host == "0.0.0.0" else options.host)  # noqa: S104 - it is compared
+    profile = "" if options.profile == "go1" else f"{options.profile}@"
+    words = [
+        *(
+            "rex",
+            "run",
+            "Find me a bench",
+            "--world",
+            options.world,
+            *(("--bbox", options.bbox) if options.bbox else ()),
+        ),
+        *("--seed", str(options.seed), *start.split(" ", 1)),
+        *("--vehicle", f"{profile}go1://{host}:{port}", "--gps", f"gpsd://{host}:{served.gnss_port}", "--move"),
+        *(("--clock", "virtual") if served.is_lockstep else ()),
+    ]
+    return shlex.join(words)
 
 
 def _in_words(start: Pose, world: World) -> str:

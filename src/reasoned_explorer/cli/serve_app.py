@@ -16,7 +16,7 @@ def add_serve(app: typer.Typer) -> None:
 @answering
 def serve(
     *,
-    as_: Annotated[str, typer.Option("--as", help="Whose wire: airsim or mavlink.")],
+    as_: Annotated[str, typer.Option("--as", help="Whose wire: airsim, mavlink or go1.")],
     world: Annotated[
         str,
         typer.Option(
@@ -36,18 +36,22 @@ def serve(
     seed: Annotated[int, typer.Option(help="Everything that is drawn is keyed by it.")] = 0,
     vehicle: Annotated[
         str | None,
-        typer.Option(help="A vehicle profile; see rex names.", show_default="drone; go1 as a rover's autopilot"),
+        typer.Option(help="A vehicle profile; see rex names.", show_default="drone; go1 as go1 or a rover's autopilot"),
     ] = None,
     host: Annotated[
         str, typer.Option(help="Listen on this address. Whoever reaches it moves the vehicle.")
     ] = "127.0.0.1",
     port: Annotated[
         int | None,
-        typer.Option(help="Listen on this port; 0 for any that is free.", show_default="41451; 14550 as mavlink"),
+        typer.Option(
+            help="Listen on this port; 0 for any that is free.", show_default="41451; 14550 as mavlink; 8082 as go1"
+        ),
     ] = None,
     speed: Annotated[
         str | None,
-        typer.Option(help="Simulated seconds in a real one, or max: as fast as asked.", show_default="1"),
+        typer.Option(
+            help="Simulated seconds in a real one, or max: as fast as asked. As go1, 1 or max.", show_default="1"
+        ),
     ] = None,
     noise: Annotated[
         str, typer.Option(help="Of the sensors that it steers by: none, rtk-fixed, rtk-float, single.")
@@ -58,6 +62,13 @@ def serve(
     ] = "arducopter",
     station: Annotated[
         str | None, typer.Option(help="As mavlink, HOST:PORT of a ground station (UDP) that is shown the vehicle.")
+    ] = None,
+    gps_port: Annotated[
+        int | None,
+        typer.Option(
+            help="As go1, its receiver answers as gpsd on this port; 0 for any that is free.",
+            show_default="2947; any that is free with --port 0",
+        ),
     ] = None,
     generation: Annotated[
         int, typer.Option(help="The version that it says it is: 1 (AirSim, Colosseum) or 4 (Cosys-AirSim).")
@@ -85,6 +96,7 @@ def serve(
             settings=settings,
             flavour=flavour,
             station=station,
+            gps_port=gps_port,
             generation=generation,
             conditions=conditions,
         )

@@ -10,11 +10,12 @@ from dataclasses import dataclass
 
 import typer
 
-from reasoned_explorer.cli.answers import ExitCode
+from reasoned_explorer.cli.answers import ExitCode, complain
 from reasoned_explorer.cli.console import Output
 from reasoned_explorer.clock import RealClock
+from reasoned_explorer.evaluation.equipment import read_equipment
 from reasoned_explorer.evaluation.guarding import Guarding
-from reasoned_explorer.evaluation.vehicle_address import Errand, VehicleAddress, vehicle_address
+from reasoned_explorer.evaluation.vehicle_address import Errand, VehicleAddress, equipped, vehicle_address
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Fault, Gathering, PartError, SettingsError
 from reasoned_explorer.vehicles.registry import vehicle_profile
@@ -22,6 +23,8 @@ from reasoned_explorer.vehicles.safety.limits import SafetyLimits, limited_profi
 from reasoned_explorer.vehicles.safety.operator_stop import STOP_KEYS, KeyboardListener, OperatorStop
 from reasoned_explorer.vehicles.safety.preflight import CheckItem, CheckVerdict, preflight
 
+#: A machine with a camera beside its wire stops where that is silent for longer, seconds.
+_PICTURE_AGE_S = 3.0
 _MARKS = {CheckVerdict.OK: "ok", CheckVerdict.UNKNOWN: "??", CheckVerdict.FAULT: "NO"}
 
 
@@ -35,15 +38,39 @@ class VehicleOptions:
     dry_run: bool = False
     confirm: bool = False
     move: bool = False
+    gps: str | None = None
+    ntrip: str | None = None
+    camera: str | None = None
+    camera_fov_deg: float | None = None
 
     @property
     def address(self) -> VehicleAddress | None:
-        """Where the vehicle is; None for the embedded simulator's.
+        """Where the vehicle is, with what it has beside its wire; None for the embedded simulator's.
 
         Raises:
-            InputError: If it is neither an address nor the name of a profile.
+            InputError: If it is neither an address nor the name of a profile, or its equipment is wrong.
         """
-        return vehicle_address(self.vehicle)
+        found = Gathering()
+        address = self._address(found)
+        found.finish("vehicle")
+        return address
+
+    def _address(self, found: Gathering) -> VehicleAddress | None:
+        """Return that as far as it is sound; what is wrong is kept in ``found``."""
+        faults = Gathering()
+        equipment = read_equipment(
+            faults,
+            gps=self.gps,
+            ntrip=self.ntrip,
+            camera=self.camera,
+            camera_fov_deg=self.camera_fov_deg,
+            say=lambda text: complain(f"note: {text}"),
+        )
+        found.add(*faults.errors)
+        address = found.take(lambda: vehicle_address(self.vehicle), None)
+        if address is None or faults.errors:
+            return address
+        return found.take(lambda: equipped(address, equipment), address)
 
     def check(self, found: Gathering, *, asks_to_move: bool = True) -> None:
         """Keep what is wrong with it.
@@ -52,13 +79,16 @@ class VehicleOptions:
             found: Where it is kept.
             asks_to_move: Whether the vehicle is to go anywhere.
         """
-        address = found.take(lambda: self.address, None)
+        address = self._address(found)
         given = {
             "--fence": self.fence_m is not None,
             "--max-speed": self.max_speed_mps is not None,
             "--dry-run": self.dry_run,
             "--confirm": self.confirm,
             "--move": self.move,
+            "--gps": self.gps is not None,
+            "--ntrip": self.ntrip is not None,
+            "--camera": self.camera is not None,
         }
         if address is not None:
             found.check(lambda: Guarding(address, self._limits(), fence_m=self.fence_m))
@@ -120,7 +150,8 @@ class VehicleOptions:
             yield orders
 
     def _limits(self) -> SafetyLimits:
-        return SafetyLimits(speed_mps=self.max_speed_mps)
+        picture_age_s = None if self.camera is None else _PICTURE_AGE_S
+        return SafetyLimits(speed_mps=self.max_speed_mps, picture_age_s=picture_age_s)
 
 
 def check_vehicle(options: VehicleOptions) -> None:

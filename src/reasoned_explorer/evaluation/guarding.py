@@ -60,9 +60,19 @@ class Guarding:
         settings = mission.settings
         shows = is_model_name(settings.captioner) or mission.keeps_pictures
         if shows and not self.address.has_camera:
-            fault = Fault(f"no pictures come from {self.address}", "a simulated captioner", "and no --images")
+            expected = "a simulated captioner and no --images"
+            remedy = "or give a --camera, where its wire has none"
+            fault = Fault(f"no pictures come from {self.address}", expected, remedy)
             raise SettingsError("vehicle", [fault])
-        errand = Errand(mission.clock, mission.home, shows, mission.content(), self.may_move)
+        errand = Errand(
+            mission.clock,
+            mission.home,
+            shows,
+            mission.content(),
+            self.may_move,
+            mission.origin,
+            settings.picture_px,
+        )
         return guarded(
             lambda profile: self.address.vehicle(profile, errand),
             mission.profile,

@@ -17,7 +17,8 @@ from reasoned_explorer.evaluation.scoring import MissionScore, outcome_of, score
 from reasoned_explorer.evaluation.track import looks_of, track_of
 from reasoned_explorer.evaluation.truth import OracleTruth
 from reasoned_explorer.exploration.explorer import Exploration, Explorer
-from reasoned_explorer.geometry import Pose
+from reasoned_explorer.geometry import GeoOrigin, Pose
+from reasoned_explorer.geometry.frames import NOWHERE
 from reasoned_explorer.model import (
     Fault,
     Gathering,
@@ -186,6 +187,11 @@ class Mission(MissionCourse):
     def home(self) -> Pose:
         """Where the vehicle was switched on: where the mission begins."""
         return self.start
+
+    @property
+    def origin(self) -> GeoOrigin:
+        """Where on earth the origin of the world lies; for a world that is nowhere, where served receivers put it."""
+        return self.atlas.world.origin or NOWHERE
 
     def content(self) -> Content | None:
         """Return what says what a camera shows, for simulated captioners; None where a model looks at pictures."""

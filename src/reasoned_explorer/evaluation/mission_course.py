@@ -22,7 +22,7 @@ from reasoned_explorer.evaluation.picture_folder import KeepingCaptioner
 from reasoned_explorer.evaluation.record_file import RecordWriter
 from reasoned_explorer.evaluation.scoring import MissionScore
 from reasoned_explorer.exploration.explorer import Exploration, Explorer, Parts
-from reasoned_explorer.geometry import Pose
+from reasoned_explorer.geometry import GeoOrigin, Pose
 from reasoned_explorer.minds.context import MindContext, Minds
 from reasoned_explorer.minds.latency import latency_profile
 from reasoned_explorer.minds.prompted import prompted_minds
@@ -80,6 +80,11 @@ class MissionCourse(ABC):
     def keeps_pictures(self) -> bool:
         """Whether the pictures of all views are kept."""
         return self._pictures is not None
+
+    @property
+    def origin(self) -> GeoOrigin | None:
+        """Where on earth the origin of the mission's frame lies; None where nobody knows."""
+        return None
 
     def content(self) -> Content | None:
         """Return what says what a camera of the world shows; None where no world is known."""

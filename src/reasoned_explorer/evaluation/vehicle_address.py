@@ -1,12 +1,14 @@
 """Vehicles that a person names by where they are reached, such as ``airsim://127.0.0.1:41451``."""
 
+import ipaddress
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Protocol
 from urllib.parse import urlsplit
 
 from reasoned_explorer.clock import Clock
-from reasoned_explorer.geometry import Pose
+from reasoned_explorer.evaluation.equipment import Equipment
+from reasoned_explorer.geometry import GeoOrigin, Pose
 from reasoned_explorer.model import Fault, SettingsError
 from reasoned_explorer.vehicles.looking import Content
 from reasoned_explorer.vehicles.mavlink.address import Address
@@ -18,7 +20,11 @@ if TYPE_CHECKING:
     from reasoned_explorer.vehicles.airsim.place import ServedPlace
 
 _AIRSIM_PORT = 41451
-_FORM = "airsim://HOST:PORT or mavlink:CONNECTION, as in mavlink:udpin:0.0.0.0:14550; PROFILE@ may stand before it"
+_GO1_PORT = 8082
+_FORM = (
+    "airsim://HOST:PORT, go1://HOST:PORT or mavlink:CONNECTION, as in mavlink:udpin:0.0.0.0:14550; "
+    "PROFILE@ may stand before it"
+)
 _ADDRESS = re.compile(r"^(?:(?P<profile>[^@:/]+)@)?(?P<scheme>[a-z0-9]+):(?P<rest>.*)$", re.IGNORECASE | re.DOTALL)
 
 
@@ -32,6 +38,9 @@ class Errand:
         pictures: Whether pictures are taken.
         content: Says what its cameras show, for simulated captioners of a world that both ends know.
         may_move: Whether a machine that may be real may be made to move.
+        origin: Where on earth the origin of the world's frame lies; None where nobody knows: a receiver's first fix is
+            then where it starts.
+        picture_px: Least width of the pictures of a camera beside the wire, pixels.
     """
 
     clock: Clock
@@ -39,6 +48,8 @@ class Errand:
     pictures: bool = True
     content: Content | None = None
     may_move: bool = False
+    origin: GeoOrigin | None = None
+    picture_px: int = 0
 
 
 class VehicleAddress(Protocol):
@@ -95,8 +106,7 @@ class AirSimAddress:
     profile: str = "drone"
 
     def __str__(self) -> str:
-        host = f"[{self.host}]" if ":" in self.host else self.host
-        return f"airsim://{host}:{self.port}"
+        return f"airsim://{_bracketed(self.host)}:{self.port}"
 
     @property
     def may_be_real(self) -> bool:
@@ -144,10 +154,12 @@ class MavlinkAddress:
     Attributes:
         connection: Where the autopilot is reached.
         profile: Of a flyer for a drone, of a walker for a rover.
+        equipment: Its camera.
     """
 
     connection: Address
     profile: str = "drone"
+    equipment: Equipment = field(default_factory=Equipment)
 
     def __str__(self) -> str:
         return f"mavlink:{self.connection}"
@@ -160,7 +172,7 @@ class MavlinkAddress:
     @property
     def has_camera(self) -> bool:
         """They do not come over this wire."""
-        return False
+        return self.equipment.camera is not None
 
     @property
     def looks_ahead(self) -> bool:
@@ -168,16 +180,20 @@ class MavlinkAddress:
         return False
 
     def vehicle(self, profile: VehicleProfile, errand: Errand) -> Vehicle:
-        """Return the driver."""
+        """Return the driver; with a camera, which looks ahead, it turns to look."""
         from reasoned_explorer.vehicles.mavlink.settings import DriverSettings
         from reasoned_explorer.vehicles.mavlink.vehicle import MavlinkVehicle
 
+        camera = self.equipment.photographer(profile.camera, least_px=errand.picture_px) if errand.pictures else None
+        if camera is not None:
+            profile = replace(profile, turns_to_look=True)
         return MavlinkVehicle(
             profile,
             clock=errand.clock,
             address=str(self.connection),
             home=replace(errand.start, z_m=0.0),
             settings=DriverSettings(arms=errand.may_move, settle_s=0.0),
+            camera=camera,
             content=errand.content,
         )
 
@@ -186,12 +202,105 @@ class MavlinkAddress:
         return None
 
 
+@dataclass(frozen=True, slots=True)
+class Go1Address:
+    """A Unitree Go1, or what answers as one; see `VehicleAddress`.
+
+    Attributes:
+        host: Of the robot.
+        port: Where it listens to high-level commands.
+        profile: Of a machine that walks and turns to look.
+        equipment: Its receiver and its camera.
+    """
+
+    host: str
+    port: int = _GO1_PORT
+    profile: str = "go1"
+    equipment: Equipment = field(default_factory=Equipment)
+
+    def __str__(self) -> str:
+        return f"go1://{_bracketed(self.host)}:{self.port}"
+
+    @property
+    def may_be_real(self) -> bool:
+        """Nobody can tell by an address."""
+        return True
+
+    @property
+    def has_camera(self) -> bool:
+        """They do not come over this wire."""
+        return self.equipment.camera is not None
+
+    @property
+    def looks_ahead(self) -> bool:
+        """Its states hold a distance, but nobody has tried what that is worth."""
+        return False
+
+    def vehicle(self, profile: VehicleProfile, errand: Errand) -> Vehicle:
+        """Return the driver."""
+        from reasoned_explorer.vehicles.unitree.link import LinkSettings
+        from reasoned_explorer.vehicles.unitree.vehicle import Go1Vehicle
+
+        start, equipment = replace(errand.start, z_m=0.0), self.equipment
+        return Go1Vehicle(
+            profile,
+            clock=errand.clock,
+            host=self.host,
+            port=self.port,
+            # The robot's own network is one for one program; on this machine there may be several.
+            link=LinkSettings(local_port=0) if _is_this_machine(self.host) else None,
+            home=start,
+            positions=equipment.receiver(start, errand.origin, errand.clock.now_s),
+            camera=equipment.photographer(profile.camera, least_px=errand.picture_px) if errand.pictures else None,
+            content=errand.content,
+        )
+
+    async def place(self) -> "ServedPlace | None":
+        """Return None: a robot knows no world."""
+        return None
+
+
+def equipped(address: VehicleAddress, equipment: Equipment) -> VehicleAddress:
+    """Return an address with what its machine has beside its wire.
+
+    Raises:
+        SettingsError: If it needs something that it does not have, or has no use for something.
+    """
+    faults = []
+    if isinstance(address, Go1Address):
+        if equipment.positions is None:
+            fault = Fault(
+                f"no receiver for {address}",
+                "--gps gpsd://HOST:PORT, or --gps serial:/dev/ttyUSB1:38400",
+                "a Go1 does not know where it is",
+            )
+            faults.append(fault)
+    elif equipment.positions is not None or equipment.corrections is not None:
+        faults.append(Fault(f"--gps or --ntrip for {address}", "neither", "it tells where it is over its own wire"))
+    if isinstance(address, AirSimAddress) and equipment.camera is not None:
+        faults.append(Fault(f"--camera for {address}", "none", "its pictures come over its own wire"))
+    if faults:
+        raise SettingsError("--vehicle", faults)
+    return replace(address, equipment=equipment) if isinstance(address, MavlinkAddress | Go1Address) else address
+
+
+def _bracketed(host: str) -> str:
+    return f"[{host}]" if ":" in host else host
+
+
+def _is_this_machine(host: str) -> bool:
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
 def vehicle_address(text: str) -> VehicleAddress | None:
     """Return the address in a vehicle's name; None where it is the name of a profile.
 
     Args:
-        text: ``airsim://HOST:PORT`` (the port may be left out) or ``mavlink:CONNECTION`` as MAVLink's tools write it,
-            with ``PROFILE@`` before it for another profile than ``drone``.
+        text: ``airsim://HOST:PORT``, ``go1://HOST:PORT`` (the port may be left out) or ``mavlink:CONNECTION`` as
+            MAVLink's tools write it, with ``PROFILE@`` before it for another profile than ``drone``; of a Go1, ``go1``.
 
     Raises:
         SettingsError: If it is neither, or the profile's machine does not fly where it has to.
@@ -200,12 +309,20 @@ def vehicle_address(text: str) -> VehicleAddress | None:
     match = _ADDRESS.match(text.strip())
     if match is None:
         return None
-    profile, scheme = match["profile"] or "drone", match["scheme"].lower()
+    scheme = match["scheme"].lower()
+    profile = match["profile"] or ("go1" if scheme == "go1" else "drone")
     if scheme == "airsim" and match["rest"].startswith("//"):
         host, port = _host_and_port(text, match["rest"])
         if not vehicle_profile(profile).flies:
             raise SettingsError("vehicle", [Fault(f"{profile!r} does not fly", "the profile of a flyer", "e.g. drone")])
         return AirSimAddress(host, _AIRSIM_PORT if port is None else port, profile)
+    if scheme == "go1" and match["rest"].startswith("//"):
+        host, port = _host_and_port(text, match["rest"])
+        machine = vehicle_profile(profile)
+        if machine.flies or not machine.turns_to_look:
+            fault = Fault(f"{profile!r} does not walk and turn to look", "the profile of a walker", "e.g. go1")
+            raise SettingsError("vehicle", [fault])
+        return Go1Address(host, _GO1_PORT if port is None else port, profile)
     if scheme == "mavlink" and not match["rest"].startswith("//"):
         connection = Address.read(match["rest"])
         return MavlinkAddress(connection, vehicle_profile(profile).name)

@@ -51,6 +51,10 @@ class GeoOrigin:
         return self.lat_deg, self.lon_deg, 0.0
 
 
+#: Where those who tell satellites' positions put a world that is nowhere on earth: AirSim's own origin.
+NOWHERE = GeoOrigin(47.641468, -122.140165)
+
+
 def ned_from_enu(x_m: float, y_m: float, z_m: float) -> tuple[float, float, float]:
     """Return north, east, down for east, north, up."""
     return y_m, x_m, -z_m

@@ -1,7 +1,8 @@
-"""What vehicles share where they look: in which order they turn, and what a simulator knows of a view."""
+"""What vehicles share where they look: in which order they turn, what a simulator knows of a view, and cameras."""
 
+import math
 from collections.abc import Callable, Mapping
-from typing import TypeVar
+from typing import Protocol, TypeVar, runtime_checkable
 
 from reasoned_explorer.geometry import Pose, bearing_between_rad
 from reasoned_explorer.model import Camera
@@ -12,6 +13,40 @@ Content = Callable[[Pose, Camera], object]
 _CLEARLY_NEARER_RAD = 0.2
 
 K = TypeVar("K")
+
+
+@runtime_checkable
+class LiveSource(Protocol):
+    """A camera that is read from `open` to `close`; drivers open and close it with themselves."""
+
+    @property
+    def age_s(self) -> float:
+        """Seconds since its newest picture; infinite where there is none."""
+
+    def open(self) -> None:
+        """Begin to read it. Safe to call twice."""
+
+    def close(self) -> None:
+        """Let it go. Safe to call twice."""
+
+
+def open_camera(camera: object) -> None:
+    """Begin to read a camera that is a `LiveSource`."""
+    if isinstance(camera, LiveSource):
+        camera.open()
+
+
+def close_camera(camera: object) -> None:
+    """Let such a camera go."""
+    if isinstance(camera, LiveSource):
+        camera.close()
+
+
+def picture_age_s(camera: object) -> float | None:
+    """Return how old the newest picture of such a camera is, seconds; None where nobody can tell."""
+    if not isinstance(camera, LiveSource) or math.isinf(camera.age_s):
+        return None
+    return camera.age_s
 
 
 def turning_order(facing_rad: float, headings_rad: Mapping[K, float]) -> list[K]:

@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from reasoned_explorer.geometry.frames import NOWHERE
 from reasoned_explorer.model import SettingsError
-from reasoned_explorer.serving.go1.gnss import NOWHERE, GnssServer
+from reasoned_explorer.serving.go1.gnss import GnssServer
 from reasoned_explorer.simulation.sensors import sensor_noise
 from reasoned_explorer.simulation.walking import SatelliteFix
 from reasoned_explorer.vehicles.positioning import FixQuality, Receiver, parse_source

@@ -6,13 +6,11 @@ import math
 from datetime import UTC, datetime, timedelta
 from enum import StrEnum
 
-from reasoned_explorer.geometry.frames import GeoOrigin
+from reasoned_explorer.geometry.frames import NOWHERE, GeoOrigin
 from reasoned_explorer.model import Fault, SettingsError
 from reasoned_explorer.simulation.sensors import SensorNoise
 from reasoned_explorer.simulation.walking import SatelliteFix
 
-#: Where a world without an origin on earth is taken to be.
-NOWHERE = GeoOrigin(47.0, 8.0)
 #: The robot's time 0; any day would do.
 _EPOCH = datetime(2026, 1, 1, 12, tzinfo=UTC)
 _KNOT_MPS = 1852.0 / 3600.0

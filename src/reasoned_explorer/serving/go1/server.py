@@ -66,6 +66,11 @@ class Go1Server(asyncio.DatagramProtocol):
         self._number = 0
         self._answer = b""
 
+    @property
+    def has_link(self) -> bool:
+        """Whether it listens to commands; its receiver is served after that."""
+        return self._transport is not None
+
     async def start(self, host: str = "127.0.0.1", port: int = 0) -> int:
         """Listen; return the port."""
         loop = asyncio.get_running_loop()

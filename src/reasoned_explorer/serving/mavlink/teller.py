@@ -4,7 +4,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from reasoned_explorer.geometry import GeoOrigin, normalise_bearing_rad
+from reasoned_explorer.geometry import normalise_bearing_rad
+from reasoned_explorer.geometry.frames import NOWHERE
 from reasoned_explorer.serving.airsim.flight import State
 from reasoned_explorer.serving.mavlink.pilot import Pilot
 from reasoned_explorer.simulation.mishaps import MishapKind
@@ -31,8 +32,6 @@ RATES_HZ = {
 FRESH = ("ATTITUDE", "LOCAL_POSITION_NED", "GLOBAL_POSITION_INT", "GPS_RAW_INT", "SYS_STATUS", *FILTERS)
 #: The height of the ground above the sea, millimetres; worlds are flat.
 GROUND_MM = 122_000
-#: A world that lies nowhere is at AirSim's own origin.
-_NOWHERE = GeoOrigin(47.641468, -122.140165)
 _FULL_V, _EMPTY_V = 12.6, 10.5
 _CUSTOM, _GUIDED, _STABILISED, _ARMED = 1, 8, 16, 128
 _STANDBY, _ACTIVE = 3, 4
@@ -70,7 +69,7 @@ class Teller:
         self.home = HomeFrame(start.x_m, start.y_m, 0.0)
         origin = pilot.drone.atlas.world.origin
         self._shift_m = (0.0, 0.0) if origin is not None else (start.x_m, start.y_m)
-        self._origin = origin or _NOWHERE
+        self._origin = origin or NOWHERE
         filter_name = FILTERS[pilot.flavour.is_px4]
         self.rates_hz = {**RATES_HZ, filter_name: 1.0}
         self._makers: dict[str, Callable[[State], Any]] = {

@@ -12,7 +12,7 @@ from reasoned_explorer.geometry.frames import is_finite
 from reasoned_explorer.model import Fault, Leg, LegOutcome, PartError, SettingsError, View
 from reasoned_explorer.vehicles.airsim.conventions import HomeFrame
 from reasoned_explorer.vehicles.control.legs import LegWatch
-from reasoned_explorer.vehicles.looking import Content, turning_order
+from reasoned_explorer.vehicles.looking import Content, close_camera, open_camera, picture_age_s, turning_order
 from reasoned_explorer.vehicles.mavlink.address import Address
 from reasoned_explorer.vehicles.mavlink.autopilot import PART, Autopilot
 from reasoned_explorer.vehicles.mavlink.endings import crash_told, ending
@@ -94,7 +94,7 @@ class MavlinkVehicle(Vehicle):
         """Return what a guard is told: what is known now, also on the way."""
         moment = self._pace.moment() if self._has_moment else self._body.moment
         told = news(self.autopilot, moment, lived=self._pace.is_lived)
-        return replace(told, pose=self._at_height(told.pose))
+        return replace(told, pose=self._at_height(told.pose), picture_age_s=picture_age_s(self._camera))
 
     @property
     def _has_moment(self) -> bool:
@@ -158,6 +158,7 @@ class MavlinkVehicle(Vehicle):
         """
         if not self._is_connected:
             self._is_connected = True
+            open_camera(self._camera)
             await self._pace.talk(self.autopilot.connect)
 
     async def start(self) -> None:
@@ -219,6 +220,7 @@ class MavlinkVehicle(Vehicle):
                 self._is_paced = False
                 await self._pace.end()
         finally:
+            close_camera(self._camera)
             await self._pace.talk(self.autopilot.close)
 
     # Looking.

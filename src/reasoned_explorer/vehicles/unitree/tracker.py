@@ -21,6 +21,8 @@ _REST_MOMENTS = 6
 _PATIENCE, _PATIENCE_S = 3.0, 10.0
 #: A receiver that went away is asked again after so long.
 _RECEIVER_AGAIN_S = 1.0
+#: How long a receiver may take to say anything before the robot is told to get up without it, real seconds.
+_RECEIVER_S = 5.0
 #: How long a fix that a stepped robot says was sent may be on its way, real seconds.
 _FIX_DEADLINE_S = 10.0
 
@@ -103,11 +105,12 @@ class Tracker:
         """Open the link, have the robot stay as it is, begin to listen to the receiver.
 
         Raises:
-            PartError: If the robot is not heard.
+            PartError: If the robot is not heard, or its receiver cannot be reached.
         """
         if self._source is not None:
             self._listening = asyncio.create_task(self._listen(self._source))
         try:
+            await self._hear_receiver()
             if self.robot.is_stepped and self._source is not None:
                 # A served receiver greets with a fix: from then on all that it sends are counted.
                 await self._take_fixes(self.robot.now_s(), due=1)
@@ -320,6 +323,14 @@ class Tracker:
                 raise PartError("positioning", f"a fix is missing {self.receiver_fault}".rstrip()) from None
             self._fixes_taken += 1
             self.whereabouts.take_fix(replace(fix, time_s=now_s))
+
+    async def _hear_receiver(self) -> None:
+        """Find out before anything moves whether there is a receiver at all; its first fix may come later."""
+        until_s = asyncio.get_running_loop().time() + (0.0 if self._source is None else _RECEIVER_S)
+        while self._fixes.empty() and asyncio.get_running_loop().time() < until_s:
+            if self.receiver_fault:
+                raise PartError("positioning", self.receiver_fault)
+            await asyncio.sleep(0.02)
 
     def _position_fault(self) -> str:
         fault = f" ({self.receiver_fault})" if self.receiver_fault else ""

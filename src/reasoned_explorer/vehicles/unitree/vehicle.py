@@ -12,7 +12,7 @@ from reasoned_explorer.clock.live_thread import Stopwatch, begin_live
 from reasoned_explorer.geometry import Pose, normalise_heading_rad
 from reasoned_explorer.geometry.frames import is_finite
 from reasoned_explorer.model import Fault, Leg, LegOutcome, PartError, SettingsError, View
-from reasoned_explorer.vehicles.looking import Content, turning_order
+from reasoned_explorer.vehicles.looking import Content, close_camera, open_camera, picture_age_s, turning_order
 from reasoned_explorer.vehicles.profile import VehicleProfile
 from reasoned_explorer.vehicles.safety.telemetry import Telemetry
 from reasoned_explorer.vehicles.unitree.go1_robot import Go1Robot
@@ -146,6 +146,7 @@ class UnitreeVehicle(Vehicle):
             position=here.verdict,
             battery=None if battery is None else battery / 100.0,
             compass_rad=here.compass_rad,
+            picture_age_s=picture_age_s(self._camera),
         )
 
     async def refresh(self) -> None:
@@ -181,6 +182,7 @@ class UnitreeVehicle(Vehicle):
         if self._is_linked:
             return
         await self._talk(self._tracker.connect)
+        open_camera(self._camera)
         self._is_linked = True
         self._known_s, self._robot_known_s = self._clock.now_s(), 0.0
         await self._charge()
@@ -196,6 +198,7 @@ class UnitreeVehicle(Vehicle):
             await self._talk(self._tracker.rise)
         except BaseException:
             self._is_linked = False
+            close_camera(self._camera)
             raise
         self._is_up = True
         await self._charge()
@@ -205,7 +208,10 @@ class UnitreeVehicle(Vehicle):
         if not self._is_linked:
             return
         lies, self._is_up, self._is_linked = self._is_up and self.settings.lies, False, False
-        await self._talk(lambda: self._tracker.close(lies=lies))
+        try:
+            await self._talk(lambda: self._tracker.close(lies=lies))
+        finally:
+            close_camera(self._camera)
 
     async def look(self, headings_rad: Sequence[float]) -> Sequence[View]:
         """Turn to each heading and take a view; keys are (legs so far, looks since the last leg, index).
