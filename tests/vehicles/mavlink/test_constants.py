@@ -62,7 +62,7 @@ def test_kinds_of_machines_and_autopilots():
 def test_what_is_asked_for_and_answered():
     asked = [MAVLINK.mavlink_map[number].msgname for number in (*autopilot._OFTEN, *autopilot._SELDOM)]
     assert asked[:4] == ["GPS_RAW_INT", "ATTITUDE", "LOCAL_POSITION_NED", "GLOBAL_POSITION_INT"]
-    assert set(asked[4:]) <= {"SYS_STATUS", "BATTERY_STATUS", *teller.FILTERS, "EXTENDED_SYS_STATE"}
+    assert set(asked[4:]) <= {"DISTANCE_SENSOR", "SYS_STATUS", "BATTERY_STATUS", *teller.FILTERS, "EXTENDED_SYS_STATE"}
     commands = autopilot._ARM, autopilot._SET_MODE, autopilot._MESSAGE_INTERVAL
     assert commands == (
         MAVLINK.MAV_CMD_COMPONENT_ARM_DISARM,
