@@ -170,6 +170,21 @@ def test_a_fence_keeps_it_near_the_start() -> None:
     assert "fence" in (Path("fenced") / "record.jsonl").read_text()
 
 
+def test_the_next_mission_begins_where_the_last_one_ended() -> None:
+    with _serving(*WORLD, "--seed", "5", "--speed", "max") as (_, address):
+        assert _rex("run", *MISSION, "--vehicle", address, "--out", "first")[0] == 1
+        last = _steps("first")[-1]["legs"][-1]["track"][-1]  # type: ignore[index]
+        code, shown = _rex("run", *MISSION, "--vehicle", address, "--dry-run", "--out", "second")
+        assert code == 1, shown
+        header = json.loads((Path("second") / "record.jsonl").read_text().splitlines()[0])["header"]
+        assert header["start"][:2] == pytest.approx([last["x_m"], last["y_m"]], abs=1.0)
+        assert _steps("second")[0]["pose"][:2] == pytest.approx(header["start"][:2], abs=1.0)  # type: ignore[index]
+        far = "70,70" if last["x_m"] + last["y_m"] < 70.0 else "-80,0"
+        code, shown = _rex("run", *MISSION, "--vehicle", address, "--start", far, "--out", "elsewhere")
+        assert code == 3, shown
+        assert re.search("the machine stands [0-9]+ m from the start", shown)
+
+
 def test_the_list_before_moving_tells_what_is_wrong() -> None:
     with _serving(*WORLD, "--speed", "max") as (_, address):
         code, shown = _rex("vehicle", "check", address, "--fence", "50")

@@ -9,7 +9,7 @@ from reasoned_explorer.evaluation.vehicle_address import (
     Go1Address,
     MavlinkAddress,
     VehicleAddress,
-    start_at,
+    check_place,
     vehicle_address,
 )
 from reasoned_explorer.geometry import Pose
@@ -87,12 +87,12 @@ def test_any_text_is_an_address_or_none_or_refused(text: str) -> None:
 
 
 def test_a_mission_begins_where_the_vehicle_stands_in_its_world() -> None:
-    place = ServedPlace("plaza:3@200", "abc", Pose(1.0, 2.0, 0.0, 3.0))
-    assert start_at(place, "abc", HERE) == place.start
+    place = ServedPlace("plaza:3@200", "abc", Pose(1.0, 2.0, 0.0, 3.0), Pose(0.0, 0.0))
+    assert check_place(place, "abc", HERE) == place
     with pytest.raises(SettingsError, match="another world, plaza:3@200"):
-        start_at(place, "def", HERE)
+        check_place(place, "def", HERE)
     with pytest.raises(SettingsError, match="--start"):
-        start_at(None, "abc", HERE)
+        check_place(None, "abc", HERE)
 
 
 def test_only_what_may_be_real_asks_whether_it_may_move() -> None:

@@ -30,7 +30,7 @@ from reasoned_explorer.evaluation.mission_course import MissionCourse
 from reasoned_explorer.evaluation.mission_settings import MissionSettings, errors_of, models_of
 from reasoned_explorer.evaluation.model_desk import ModelDesk
 from reasoned_explorer.evaluation.picture_folder import PICTURES_NAME
-from reasoned_explorer.evaluation.vehicle_address import VehicleAddress, start_at
+from reasoned_explorer.evaluation.vehicle_address import VehicleAddress, check_place
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Fault, Gathering, InputError, RecordError, SettingsError
@@ -208,7 +208,7 @@ def run_from_options(options: RunOptions) -> None:
     desk = options.models.desk()
     options.models.agree(desk, settings.captioner, [world.name] if world.origin is not None else [])
     atlas = Atlas(world)
-    start = _start(options, atlas, options.vehicle.address)
+    start, home = _start(options, atlas, options.vehicle.address)
     with options.vehicle.guarding(is_real=settings.clock == "real") as guarding:
         mission = Mission(
             options.goal,
@@ -217,7 +217,7 @@ def run_from_options(options: RunOptions) -> None:
             start=start,
             desk=desk,
             pictures=folder / PICTURES_NAME if options.images else None,
-            guarding=guarding,
+            guarding=guarding and replace(guarding, home=home),
         )
         with _shown(options, mission, folder, desk, console) as on_step:
             result = mission.run(folder=folder, on_step=on_step)
@@ -281,12 +281,19 @@ def _shown(
         yield on_step
 
 
-def _start(options: RunOptions, atlas: Atlas, address: VehicleAddress | None) -> Pose | None:
-    """Return where the mission begins: as typed, or where the vehicle at an address stands; None for a random start."""
+def _start(options: RunOptions, atlas: Atlas, address: VehicleAddress | None) -> tuple[Pose | None, Pose | None]:
+    """Return where the mission begins, and where the vehicle's own frame does.
+
+    As typed, or where the vehicle at an address stands; None for a random start, and for a frame that begins there.
+    """
     start = parse_start(options.start, atlas.world)
-    if start is not None or address is None:
-        return start
-    return start_at(asyncio.run(address.place()), atlas.digest, address)
+    if address is None:
+        return start, None
+    place = asyncio.run(address.place())
+    if place is None and start is not None:
+        return start, None
+    place = check_place(place, atlas.digest, address)
+    return start or place.start, place.home
 
 
 def _kernels_are_compiled() -> bool:

@@ -190,7 +190,7 @@ async def _items(options: VehicleOptions, address: VehicleAddress) -> tuple[Chec
             raise AssertionError
         limits = orders.limits_at(start)
         profile = limited_profile(vehicle_profile(address.profile), limits)
-        vehicle = address.vehicle(profile, Errand(RealClock(), start))
+        vehicle = address.vehicle(profile, Errand(RealClock(), start, home=place.home if place else None))
         try:
             with suppress(PartError):  # the list says what is wrong
                 await vehicle.connect()

@@ -33,6 +33,7 @@ class Guarding:
         confirm: Asks a person before each leg.
         stop: The operator's.
         may_move: Whether a machine that may be real may be made to move.
+        home: Where in the mission's frame the vehicle's own begins; None where the mission says.
 
     Raises:
         SettingsError: If the fence is out of range.
@@ -45,6 +46,7 @@ class Guarding:
     confirm: Confirm | None = None
     stop: OperatorStop | None = None
     may_move: bool = False
+    home: Pose | None = None
 
     def __post_init__(self) -> None:
         if self.fence_m is not None and not is_within(self.fence_m, 2.0, 1e5):
@@ -66,12 +68,13 @@ class Guarding:
             raise SettingsError("vehicle", [fault])
         errand = Errand(
             mission.clock,
-            mission.home,
+            mission.start,
             shows,
             mission.content(),
             self.may_move,
             mission.origin,
             settings.picture_px,
+            self.home or mission.home,
         )
         return guarded(
             lambda profile: self.address.vehicle(profile, errand),

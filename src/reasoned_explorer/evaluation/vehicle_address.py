@@ -35,6 +35,7 @@ class Errand:
     Attributes:
         clock: The mission's.
         start: Where it stands, in the world's frame.
+        home: Where its own frame begins, likewise; None where it stands.
         pictures: Whether pictures are taken.
         content: Says what its cameras show, for simulated captioners of a world that both ends know.
         may_move: Whether a machine that may be real may be made to move.
@@ -50,6 +51,12 @@ class Errand:
     may_move: bool = False
     origin: GeoOrigin | None = None
     picture_px: int = 0
+    home: Pose | None = None
+
+    @property
+    def frame(self) -> Pose:
+        """Where on the ground the vehicle's own frame begins."""
+        return replace(self.home or self.start, z_m=0.0)
 
 
 class VehicleAddress(Protocol):
@@ -133,7 +140,8 @@ class AirSimAddress:
             clock=errand.clock,
             host=self.host,
             port=self.port,
-            home=replace(errand.start, z_m=0.0),
+            home=errand.frame,
+            stands=errand.start,
             settings=DriverSettings(
                 aims=True, pictures=errand.pictures, settle_s=0.0, range_camera=DriverSettings().cameras[0]
             ),
@@ -191,7 +199,8 @@ class MavlinkAddress:
             profile,
             clock=errand.clock,
             address=str(self.connection),
-            home=replace(errand.start, z_m=0.0),
+            home=errand.frame,
+            stands=errand.start,
             settings=DriverSettings(arms=errand.may_move, settle_s=0.0),
             camera=camera,
             content=errand.content,
@@ -340,7 +349,7 @@ def _host_and_port(text: str, rest: str) -> tuple[str, int | None]:
     return parts.hostname, port
 
 
-def start_at(place: "ServedPlace | None", digest: str, address: VehicleAddress) -> Pose:
+def check_place(place: "ServedPlace | None", digest: str, address: VehicleAddress) -> "ServedPlace":
     """Return where a vehicle stands in a mission's world, by what it told.
 
     Args:
@@ -361,4 +370,4 @@ def start_at(place: "ServedPlace | None", digest: str, address: VehicleAddress) 
             "give rex run the --world and --seed that rex serve was given",
         )
         raise SettingsError("vehicle", [fault])
-    return place.start
+    return place

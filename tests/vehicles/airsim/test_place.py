@@ -11,7 +11,15 @@ from reasoned_explorer.vehicles.airsim.place import PLACE_METHOD, ServedPlace, p
 
 pytest.importorskip("msgpack")
 
-TOLD = {"world": "plaza:3@200", "digest": "abc", "x_m": 1.0, "y_m": -2, "heading_rad": 3.0}
+TOLD = {
+    "world": "plaza:3@200",
+    "digest": "abc",
+    "x_m": 1.0,
+    "y_m": -2,
+    "heading_rad": 3.0,
+    "home_x_m": 0.5,
+    "home_y_m": 0,
+}
 
 
 def asked(methods: dict[str, Any]) -> ServedPlace | None:
@@ -31,7 +39,7 @@ def asked(methods: dict[str, Any]) -> ServedPlace | None:
 
 def test_the_embedded_simulator_tells() -> None:
     place = asked({"ping": lambda: True, PLACE_METHOD: lambda: TOLD})
-    assert place == ServedPlace("plaza:3@200", "abc", Pose(1.0, -2.0, 0.0, 3.0))
+    assert place == ServedPlace("plaza:3@200", "abc", Pose(1.0, -2.0, 0.0, 3.0), Pose(0.5, 0.0))
 
 
 def test_another_simulator_does_not() -> None:

@@ -64,14 +64,17 @@ class StateMethods:
         return {name: checked(name, method) for name, method in asked.items()}
 
     def place(self) -> dict[str, object]:
-        """Return which world this is and where the drone stood at first, which no other simulator tells."""
-        start, atlas = self._sim.drone.start, self._sim.atlas
+        """Return which world this is, where the drone stands and where it stood at first: no other simulator tells."""
+        sim = self._sim
+        home, here, atlas = sim.drone.start, sim.drone.state(sim.now_s), sim.atlas
         return {
             "world": atlas.world.name,
             "digest": atlas.digest,
-            "x_m": start.x_m,
-            "y_m": start.y_m,
-            "heading_rad": start.heading_rad,
+            "x_m": here.x_m,
+            "y_m": here.y_m,
+            "heading_rad": here.heading_rad,
+            "home_x_m": home.x_m,
+            "home_y_m": home.y_m,
         }
 
     def pause(self, is_paused: bool) -> None:

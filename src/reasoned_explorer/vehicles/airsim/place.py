@@ -14,17 +14,19 @@ PLACE_METHOD = "rexGetPlace"
 
 @dataclass(frozen=True, slots=True)
 class ServedPlace:
-    """Where a served vehicle stood at first.
+    """Where a served vehicle stands.
 
     Attributes:
         world: Name of the world.
         digest: Of its content, as records have it.
-        start: Where the vehicle stood, in the world's frame.
+        start: Where the vehicle stands, in the world's frame.
+        home: Where it stood at first, where its own frame begins.
     """
 
     world: str
     digest: str
     start: Pose
+    home: Pose
 
 
 async def place_of(host: str, port: int, *, deadline_s: float = 10.0) -> ServedPlace | None:
@@ -53,11 +55,11 @@ async def place_of(host: str, port: int, *, deadline_s: float = 10.0) -> ServedP
 def _understood(told: Any) -> ServedPlace | None:
     if not isinstance(told, dict):
         return None
-    numbers = [told.get(name) for name in ("x_m", "y_m", "heading_rad")]
+    numbers = [told.get(name) for name in ("x_m", "y_m", "heading_rad", "home_x_m", "home_y_m")]
     if not all(isinstance(number, int | float) and math.isfinite(number) for number in numbers):
         return None
     world, digest = told.get("world"), told.get("digest")
     if not isinstance(world, str) or not isinstance(digest, str):
         return None
-    x_m, y_m, heading_rad = (float(number) for number in numbers if number is not None)
-    return ServedPlace(world, digest, Pose(x_m, y_m, 0.0, heading_rad))
+    x_m, y_m, heading_rad, *home_m = (float(number) for number in numbers if number is not None)
+    return ServedPlace(world, digest, Pose(x_m, y_m, 0.0, heading_rad), Pose(*home_m))

@@ -22,6 +22,7 @@ from reasoned_explorer.vehicles.control.legs import LegWatch
 from reasoned_explorer.vehicles.looking import Content, turning_order
 from reasoned_explorer.vehicles.profile import VehicleProfile
 from reasoned_explorer.vehicles.safety.telemetry import Telemetry
+from reasoned_explorer.vehicles.standing import check_stands
 from reasoned_explorer.vehicles.vehicle import Vehicle
 
 #: How long taking off and climbing may take on the server's time, seconds.
@@ -57,6 +58,7 @@ class AirSimVehicle(Vehicle):
         port: Likewise.
         vehicle_name: As the simulator's settings have it; empty for its only one.
         home: Where in the world the vehicle started; the origin where no world is known.
+        stands: Where it is to be when this starts it; None for anywhere.
         settings: How it flies and looks.
         content: Says what a camera's view really contains, for the simulated captioner of a world that both ends know.
     """
@@ -70,9 +72,11 @@ class AirSimVehicle(Vehicle):
         port: int = 41451,
         vehicle_name: str = "",
         home: Pose | None = None,
+        stands: Pose | None = None,
         settings: DriverSettings | None = None,
         content: Content | None = None,
     ) -> None:
+        self._stands = stands
         self.profile, self.settings = profile, settings or DriverSettings()
         start = home or Pose(0.0, 0.0)
         self._clock, self._content = clock, content
@@ -126,6 +130,7 @@ class AirSimVehicle(Vehicle):
         self._is_up = True
         await self._pace.begin()
         self._moment = await self._pace.talk(api.moment)
+        check_stands("AirSim", self.pose, self._stands)
         if self._moment.landed:
             await self._finish(await self._pace.talk(api.take_off), "take off")
         height_m = self.profile.camera_height_m

@@ -25,6 +25,7 @@ from reasoned_explorer.vehicles.mavlink.telemetry import Battery, PositionQualit
 from reasoned_explorer.vehicles.mavlink.views import PictureSource
 from reasoned_explorer.vehicles.profile import VehicleProfile
 from reasoned_explorer.vehicles.safety.telemetry import Telemetry
+from reasoned_explorer.vehicles.standing import check_stands
 from reasoned_explorer.vehicles.vehicle import Vehicle
 
 #: A leg may take so many times as long as it should, and some seconds.
@@ -43,6 +44,7 @@ class MavlinkVehicle(Vehicle):
         address: Where the autopilot is reached (`Address.read`).
         home: Where in the world the origin of the autopilot's local frame lies: where it was switched on. Not read
             where positions are geodetic.
+        stands: Where it is to be when it is started; None for anywhere.
         settings: How it moves and looks.
         camera: Takes the pictures; None for views without.
         content: Says what a view contains, for the simulated captioner of a world that both ends know.
@@ -55,11 +57,12 @@ class MavlinkVehicle(Vehicle):
         clock: Clock,
         address: str = "udpin:127.0.0.1:14550",
         home: Pose | None = None,
+        stands: Pose | None = None,
         settings: DriverSettings | None = None,
         camera: PictureSource | None = None,
         content: Content | None = None,
     ) -> None:
-        self.profile, self.settings = profile, settings or DriverSettings()
+        self.profile, self.settings, self._stands = profile, settings or DriverSettings(), stands
         start = home or Pose(0.0, 0.0)
         is_local = self.settings.origin is None
         self._frame = HomeFrame(start.x_m, start.y_m, start.z_m) if is_local else HomeFrame()
@@ -182,6 +185,7 @@ class MavlinkVehicle(Vehicle):
             raise PartError(PART, f"the autopilot's machine {is_what}, and {self.profile.name} does not")
         await self._begin_pace()
         self._body.catch()
+        check_stands(PART, self.pose, self._stands)
         self._is_up = True
         await self._pace.talk(self.autopilot.take_control)
         await self._pace.talk(lambda: self._speed.take(self.profile.speed_mps))

@@ -10,9 +10,7 @@ from reasoned_explorer.geometry.frames import GeoOrigin
 from reasoned_explorer.model import PartError
 from reasoned_explorer.vehicles.positioning.fix import Fix, FixQuality
 from reasoned_explorer.vehicles.positioning.receiver import Receiver
-
-#: A start that is typed is off by metres, a fix without corrections by more; another town is farther.
-WITHIN_M = 50.0
+from reasoned_explorer.vehicles.standing import WITHIN_M
 
 
 class AnchoredReceiver:
