@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
@@ -22,6 +23,8 @@ _LEAST_PX = 64
 _MOST_ASPECT = 4.0
 #: A picture is dark below this brightness, and blank where it varies by less; of 255.
 _DARK, _BLANK = 8.0, 1.0
+#: A position that is not good yet is waited for by so many looks.
+_PATIENT_LOOKS = 5
 #: A cruise from which braking takes longer than this is worth a second thought, metres.
 _LONG_STOP_M = 10.0
 
@@ -75,11 +78,12 @@ async def preflight(
         rest = ("position", "camera", "geofence", "obstacles", "battery")
         unseen = tuple(CheckItem(name, CheckVerdict.UNKNOWN, "no link", "mend the link first") for name in rest)
         return (link, *unseen, _limits(vehicle, limits), _stop(stop))
-    told = telemetry_of(vehicle)
+    camera = await _camera(vehicle, pictures_vary=pictures_vary)
+    told = await _once_placed(vehicle)
     return (
         link,
         _position(told, limits),
-        await _camera(vehicle, pictures_vary=pictures_vary),
+        camera,
         _fence(told, AllowedGround(limits.fence, limits.keep_out, keep_out_at, limits.margin_m)),
         _obstacles(told, range_ahead_m),
         _battery(told, limits),
@@ -105,6 +109,18 @@ async def _link(vehicle: Vehicle) -> CheckItem:
     if age_s > 1.0:
         return CheckItem("link", CheckVerdict.FAULT, f"nothing heard for {age_s:.1f} s", "check cable or radio")
     return CheckItem("link", CheckVerdict.OK, f"heard {age_s:.2f} s ago")
+
+
+async def _once_placed(vehicle: Vehicle) -> Telemetry:
+    """Return what the machine tells once its position is good, or still is not after some looks: they take time."""
+    told = telemetry_of(vehicle)
+    for _ in range(_PATIENT_LOOKS):
+        if told.position is None or told.position.is_good:
+            break
+        with suppress(PartError):
+            await vehicle.look([vehicle.pose.heading_rad])
+        told = telemetry_of(vehicle)
+    return told
 
 
 def _position(told: Telemetry, limits: SafetyLimits) -> CheckItem:
@@ -142,7 +158,7 @@ def _picture(view: View, again: View | None) -> CheckItem:
 def _trouble_with(given: Any, again: Any) -> tuple[str, str]:
     """Return what a picture is like, and what to do about it; nothing to do where it is fine."""
     if given is None:
-        return "no picture", "switch pictures on"
+        return "no picture", "give it a camera, or switch its pictures on"
     image: Any = np.asarray(given)
     if image.ndim != 3 or image.shape[2] != 3:
         return f"a picture of shape {image.shape}", "set it to colour"
