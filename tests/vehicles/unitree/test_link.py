@@ -3,6 +3,8 @@ import math
 from collections.abc import Awaitable, Callable
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from reasoned_explorer.clock import RealClock
 from reasoned_explorer.model import PartError, SettingsError
@@ -120,6 +122,29 @@ def test_packets_that_are_none_are_counted_and_passed_over():
         await until(lambda: link.state is not None and link.state.forward_mps == 0.25)
 
     with_robot(test)
+
+
+GOOD = encode_state(HighState(mode=Mode.STAND))
+
+
+@st.composite
+def spoilt(draw: st.DrawFn) -> bytes:
+    """Return a state with some bytes changed, cut off or put on."""
+    packet = bytearray(GOOD)
+    for place in draw(st.lists(st.integers(0, len(GOOD) - 1), max_size=6)):
+        packet[place] ^= draw(st.integers(1, 255))
+    return bytes(packet[: draw(st.integers(0, len(GOOD)))]) + draw(st.binary(max_size=8))
+
+
+@given(st.lists(st.one_of(st.binary(max_size=1200), spoilt()), max_size=20))
+def test_whatever_comes_in_nothing_breaks_and_nothing_walks(packets: list[bytes]):
+    link = Go1Link("127.0.0.1", 9, now_s=lambda: 0.0)
+    for packet in packets:
+        link.datagram_received(packet, None)
+    assert link.counts.received + link.counts.malformed == len(packets)
+    assert link.counts.received == packets.count(GOOD)
+    assert link.state is None or link.state.mode == Mode.STAND
+    assert not link._command.moves
 
 
 def test_nobody_there_is_told_in_words():
