@@ -11,18 +11,19 @@ from pathlib import Path
 import pytest
 
 from reasoned_explorer.model import stopping
-from reasoned_explorer.rendering import readiness
-from reasoned_explorer.rendering.readiness import Work, compile_missing, hand_on_lines, is_kept, keep
+from reasoned_explorer.rendering import keeping
+from reasoned_explorer.rendering.keeping import compile_missing, is_kept, keep
+from reasoned_explorer.rendering.readiness import Work, hand_on_lines
 
 PARTS = ("one", "two", "three")
 #: Says a line for each part that it "compiles", which takes it a while; a file for each says who did it.
 COMPILER = """
 import sys, time
 from pathlib import Path
-from reasoned_explorer.rendering import readiness
+from reasoned_explorer.rendering import keeping
 
 folder, me = Path(sys.argv[1]), sys.argv[2]
-readiness.cache_folder = lambda: folder
+keeping.cache_folder = lambda: folder
 
 def compile_part(part):
     print(part, flush=True)
@@ -30,7 +31,7 @@ def compile_part(part):
     with (folder / f"{part}.by").open("a") as file:
         file.write(me)
 
-readiness.compile_missing(sys.argv[3:], compile_part)
+keeping.compile_missing(sys.argv[3:], compile_part)
 """
 
 
@@ -46,7 +47,7 @@ class Compiler:
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(readiness, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(keeping, "cache_folder", lambda: tmp_path)
     return tmp_path
 
 
@@ -72,7 +73,7 @@ def test_a_part_is_kept_once_it_is_noted(folder: Path) -> None:
 
 def test_what_was_compiled_from_other_sources_is_not_kept(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     keep("one")
-    monkeypatch.setattr(readiness, "_fingerprint", lambda: "of other sources")
+    monkeypatch.setattr(keeping, "_fingerprint", lambda: "of other sources")
     assert not is_kept("one")
     keep("one")
     assert is_kept("one")
@@ -87,13 +88,13 @@ def test_a_damaged_note_is_none(folder: Path, content: bytes) -> None:
 
 
 def test_where_nothing_can_be_noted_nothing_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(readiness, "cache_folder", lambda: tmp_path / "nowhere")
+    monkeypatch.setattr(keeping, "cache_folder", lambda: tmp_path / "nowhere")
     keep("one")
     assert not is_kept("one")
 
 
 def test_where_numba_compiles_nothing_all_is_ready(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(readiness, "cache_folder", lambda: None)
+    monkeypatch.setattr(keeping, "cache_folder", lambda: None)
     compiler = Compiler()
     assert compile_missing(PARTS, compiler) == []
     assert compiler.compiled == []
@@ -203,7 +204,7 @@ def test_work_is_done_once(folder: Path) -> None:
 
 def test_where_nothing_can_be_noted_each_part_is_compiled_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("")
-    monkeypatch.setattr(readiness, "cache_folder", lambda: tmp_path / "file" / "folder")
+    monkeypatch.setattr(keeping, "cache_folder", lambda: tmp_path / "file" / "folder")
     compiler = Compiler()
     work = Work(PARTS, compiler, lambda _: python("pass"), 1)
     work.begin()
@@ -232,7 +233,7 @@ def test_what_numba_compiles_is_told() -> None:
     import numba
 
     names: list[str] = []
-    with readiness.telling(names.append):
+    with keeping.telling(names.append):
         numba.njit(_plus_one)(2)
     numba.njit(_plus_two)(2)
     assert names == ["_plus_one"]

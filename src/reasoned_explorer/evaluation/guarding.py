@@ -4,12 +4,10 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from reasoned_explorer.calls.chat import is_model_name
-from reasoned_explorer.calls.ledger import Ledger
 from reasoned_explorer.evaluation.vehicle_address import Errand, VehicleAddress
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Fault, SettingsError
 from reasoned_explorer.model.checks import is_within
-from reasoned_explorer.model.record import CallRecord
 from reasoned_explorer.vehicles.safety.area import Circle
 from reasoned_explorer.vehicles.safety.building import guarded
 from reasoned_explorer.vehicles.safety.guard import Confirm, GuardedVehicle
@@ -100,13 +98,3 @@ class Guarding:
         if self.fence_m is None:
             return self.limits
         return replace(self.limits, fence=Circle(start.x_m, start.y_m, self.fence_m))
-
-
-def listen_for_lost_calls(guard: GuardedVehicle, ledger: Ledger) -> None:
-    """Have a guard told what comes of each call of a model."""
-
-    def hear(call: CallRecord) -> None:
-        if is_model_name(call.model):
-            guard.note_model_call(answered=call.fault is None, why=call.fault or "")
-
-    ledger.on_call = hear

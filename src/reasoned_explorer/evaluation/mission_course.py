@@ -14,7 +14,6 @@ from reasoned_explorer.calls.caller import Caller, end_of
 from reasoned_explorer.calls.chat import is_model_name
 from reasoned_explorer.calls.ledger import CallRecord, Ledger
 from reasoned_explorer.clock import Clock
-from reasoned_explorer.evaluation.guarding import listen_for_lost_calls
 from reasoned_explorer.evaluation.guide import Guide
 from reasoned_explorer.evaluation.mission_settings import THROUGH_PIXELS, MissionSettings, with_overrides
 from reasoned_explorer.evaluation.model_desk import ModelDesk
@@ -218,7 +217,7 @@ class MissionCourse(ABC):
         parts = Parts(vehicle, captioner, planner, minds.checker, self.clock, ledger, models_end)
         if isinstance(vehicle, GuardedVehicle):
             guard = vehicle
-            listen_for_lost_calls(guard, ledger)
+            _listen_for_lost_calls(guard, ledger)
             parts = replace(
                 parts,
                 must_end=lambda: models_end() or guard.must_end(),
@@ -261,3 +260,13 @@ def _rare_collections() -> Iterator[None]:
         yield
     finally:
         gc.set_threshold(*before)
+
+
+def _listen_for_lost_calls(guard: GuardedVehicle, ledger: Ledger) -> None:
+    """Have a guard told what comes of each call of a model."""
+
+    def hear(call: CallRecord) -> None:
+        if is_model_name(call.model):
+            guard.note_model_call(answered=call.fault is None, why=call.fault or "")
+
+    ledger.on_call = hear

@@ -12,13 +12,13 @@ from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Camera
 from reasoned_explorer.rendering.conditions import Conditions
 from reasoned_explorer.rendering.ground import GroundMap
+from reasoned_explorer.rendering.keeping import compile_missing, telling
 from reasoned_explorer.rendering.light import developing_curve, light_of, sun_direction
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.mesh import Mesh, Model
 from reasoned_explorer.rendering.mipmaps import ground_looks_of, surfaces_of, textures_of
 from reasoned_explorer.rendering.projection import projection_of
 from reasoned_explorer.rendering.raster_kernels import SKY, draw, gather, read_out
-from reasoned_explorer.rendering.readiness import compile_missing, telling
 from reasoned_explorer.rendering.room import Room, new_canvas
 from reasoned_explorer.rendering.scene import FIRST_BUILDING_ID, Placed, Scene
 from reasoned_explorer.rendering.shading_kernels import shade

@@ -12,9 +12,10 @@ from reasoned_explorer.model import Camera, Fault, SettingsError
 from reasoned_explorer.rendering.conditions import Conditions
 from reasoned_explorer.rendering.light import developing_curve, light_of, sun_direction
 from reasoned_explorer.rendering.mipmaps import ground_looks_of, material_textures, surfaces_of
+from reasoned_explorer.rendering.progress import Progress
 from reasoned_explorer.rendering.projection import Projection, projection_of
 from reasoned_explorer.rendering.raster_kernels import Canvas, draw, gather, read_out
-from reasoned_explorer.rendering.readiness import Progress, make_ready
+from reasoned_explorer.rendering.readiness import make_ready
 from reasoned_explorer.rendering.room import Room, new_canvas
 from reasoned_explorer.rendering.scene import Scene
 from reasoned_explorer.rendering.shading_kernels import shade

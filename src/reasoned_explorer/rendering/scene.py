@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from reasoned_explorer.rendering.ground import GroundMap, ground_of
 from reasoned_explorer.rendering.library import Library, linear_from_srgb, pack
 from reasoned_explorer.rendering.mesh import Model
-from reasoned_explorer.rendering.readiness import Progress, begin
+from reasoned_explorer.rendering.progress import Progress
 from reasoned_explorer.world.taxonomy import CLASS_NAMES
 from reasoned_explorer.world.world import World
 
@@ -109,7 +109,6 @@ class Scene:
             seed: Of looks (which of its class's models a thing has, its colour); by default the world's own.
             on_progress: Told what takes long.
         """
-        begin()
         # Whoever compiles has no need of them.
         from reasoned_explorer.rendering.buildings import models_of_buildings
         from reasoned_explorer.rendering.fronts import fronts_of, walls_taken

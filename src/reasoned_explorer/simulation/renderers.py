@@ -22,6 +22,7 @@ def renderer_of(atlas: "Atlas", conditions: str | None = None) -> "Renderer":
             those who ask for depth and ids alone.
     """
     from reasoned_explorer.rendering.conditions import PRESETS
+    from reasoned_explorer.rendering.readiness import begin
     from reasoned_explorer.rendering.renderer import Renderer
     from reasoned_explorer.rendering.scene import Scene
 
@@ -30,6 +31,8 @@ def renderer_of(atlas: "Atlas", conditions: str | None = None) -> "Renderer":
         if conditions is None and made:
             return next(iter(made.values()))
         name = conditions or "clear"
+        # What is not compiled yet is compiled beside the making of the scene.
+        begin()
         if name not in made:
             scene = next((renderer.scene for renderer in made.values()), None) or Scene.of(atlas)
             made[name] = Renderer(scene, PRESETS[name])
