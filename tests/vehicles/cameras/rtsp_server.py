@@ -15,8 +15,7 @@ from gi.repository import GLib, Gst, GstRtspServer  # noqa: E402
 ENCODERS = {
     "jpeg": ("jpegenc", "jpegenc ! rtpjpegpay name=pay0"),
     "vp8": ("vp8enc", "vp8enc deadline=1 keyframe-max-dist=10 ! rtpvp8pay name=pay0"),
-    "h264": ("x264enc", "x264enc tune=zerolatency key-int-max=10 ! rtph264pay name=pay0 config-interval=1"),
-    "openh264": ("openh264enc", "openh264enc gop-size=10 ! h264parse ! rtph264pay name=pay0 config-interval=1"),
+    "h264": ("openh264enc", "openh264enc gop-size=10 ! h264parse ! rtph264pay name=pay0 config-interval=1"),
 }
 
 
