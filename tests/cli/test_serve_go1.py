@@ -177,6 +177,12 @@ def test_what_is_wrong_is_told_at_once(arguments: list[str], what: list[str]) ->
     assert not list(Path().iterdir())
 
 
+def test_the_list_says_that_it_is_the_receiver_that_is_not_there() -> None:
+    code, shown = _rex("vehicle", "check", *NOWHERE[1:])
+    assert code == 3, shown
+    assert re.search(r"NO +link +positioning: gpsd at 127.0.0.1:9 cannot be reached", shown)
+
+
 def test_a_port_of_its_receiver_that_is_taken_is_told() -> None:
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))

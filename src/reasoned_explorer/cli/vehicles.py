@@ -6,7 +6,7 @@ import queue
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import typer
 
@@ -191,10 +191,15 @@ async def _items(options: VehicleOptions, address: VehicleAddress) -> tuple[Chec
         limits = orders.limits_at(start)
         profile = limited_profile(vehicle_profile(address.profile), limits)
         vehicle = address.vehicle(profile, Errand(RealClock(), start, home=place.home if place else None))
+        seen = ""
         try:
-            with suppress(PartError):  # the list says what is wrong
+            try:
                 await vehicle.connect()
-            return await preflight(vehicle, limits, stop=orders.stop or stop)
+            except PartError as fault:
+                seen = str(fault)
+            link, *rest = await preflight(vehicle, limits, stop=orders.stop or stop)
+            # What kept it from connecting says more than that it is not heard.
+            return (replace(link, seen=seen) if seen and link.verdict is CheckVerdict.FAULT else link, *rest)
         finally:
             with suppress(PartError):  # the list says what is wrong
                 await vehicle.close()
