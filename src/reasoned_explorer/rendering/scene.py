@@ -102,7 +102,9 @@ class Scene:
 
     @classmethod
     def of(cls, world: "World | Atlas", *, seed: int | None = None, on_progress: Progress | None = None) -> "Scene":
-        """Return the scene of a world. If need be, the renderer's kernels are compiled meanwhile.
+        """Return the scene of a world.
+
+        The renderer's kernels are compiled beside it, if need be, where `rendering.readiness.begin` was called before.
 
         Args:
             world: The world, or an atlas of it.
