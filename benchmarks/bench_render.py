@@ -42,12 +42,14 @@ import time
 begin = time.perf_counter()
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import Camera
+from reasoned_explorer.rendering.readiness import begin as start_compiling
 from reasoned_explorer.rendering.renderer import Renderer
 from reasoned_explorer.rendering.scene import Scene
 from reasoned_explorer.world.opening import open_world
 imported = time.perf_counter()
 world = open_world({world!r})
 opened = time.perf_counter()
+start_compiling()
 scene = Scene.of(world)
 made = time.perf_counter()
 Renderer(scene).picture(Pose(0.0, 0.0, 1.6), Camera())
