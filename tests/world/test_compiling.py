@@ -119,3 +119,13 @@ def test_what_one_process_has_compiled_the_next_reads_without_getting_ready_to_c
     # Parts are pieces of kernels: they have no files.
     kept = {path.name.split("-")[0] for path in (tmp_path / "cache").rglob("*.nbc")}
     assert kept == {"kernels_of_a_test.longest", "kernels_of_a_test.shares"}
+
+
+def test_a_kernel_is_compiled_anew_when_a_file_beside_it_changes_that_a_piece_of_it_is_from(tmp_path: Path) -> None:
+    parts, rest = MODULE.split("@inlined")
+    (tmp_path / "lengths.py").write_text(parts)
+    header = "from reasoned_explorer.world.compiling import inlined, kernel\nfrom lengths import _length\n"
+    (tmp_path / "kernels_of_a_test.py").write_text(f"{header}\n@inlined{rest}")
+    assert _use(tmp_path)[0] == "10.0"
+    (tmp_path / "lengths.py").write_text(parts.replace("math.hypot(points[k, 0]", "math.hypot(4.0 * points[k, 0]"))
+    assert float(_use(tmp_path)[0]) == pytest.approx(np.hypot(24.0, 8.0))

@@ -87,6 +87,7 @@ def _compile_shading(scene: Scene) -> None:
         room.wanted,
         np.empty(4, np.int32),
         np.empty(4, np.int32),
+        np.empty((4, _SIDE)),
         1,
         np.ones(_SIDE, np.uint8),
         np.empty((_SIDE, _SIDE, 3), np.uint8),

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reasoned_explorer.rendering.conditions import Conditions
-from reasoned_explorer.rendering.shading_kernels import Light
+from reasoned_explorer.rendering.sky_kernels import Light
 
 Rgb = tuple[float, float, float]
 _CLOUD_SIDE = 128

@@ -4,10 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reasoned_explorer.rendering.ground import GroundMap
+from reasoned_explorer.rendering.ground_kernels import GroundLooks
 from reasoned_explorer.rendering.library import Library, linear_from_srgb
 from reasoned_explorer.rendering.scene import Instances
-from reasoned_explorer.rendering.shading_kernels import GroundLooks, Surfaces, Textures
+from reasoned_explorer.rendering.shading_kernels import Surfaces
 from reasoned_explorer.rendering.shelf import Arrays, kept_arrays
+from reasoned_explorer.rendering.texture_kernels import LANE, TEXEL_BITS, Textures
 from reasoned_explorer.rendering.textures import TEXTURE_METRES, texture_stack
 
 _FIRST_BLOCK = 4
@@ -31,8 +33,12 @@ def textures_of(stack: NDArray[np.float32], metres: NDArray[np.float32]) -> Text
             break
         pairs = level.reshape(level.shape[0], level.shape[1] // 2, 2, level.shape[2] // 2, 2, 3)
         level = pairs.mean(axis=(2, 4), dtype=np.float32)
-    texels = np.ascontiguousarray(np.concatenate(levels), np.float32)
-    return Textures(texels, np.array(starts, np.int64), stack.shape[1], 1.0 / np.asarray(metres, np.float64))
+    return Textures(
+        _packed(np.concatenate(levels)),
+        np.array(starts, np.int64),
+        stack.shape[1],
+        1.0 / np.asarray(metres, np.float64),
+    )
 
 
 def material_textures() -> Textures:
@@ -46,9 +52,22 @@ def material_textures() -> Textures:
     return Textures(texels, starts, int(side), per_metre)
 
 
+def _packed(colours: NDArray[np.float32]) -> NDArray[np.int64]:
+    """Return linear light, shape (n, 3), as the shader reads it: see `Textures`."""
+    whole = np.rint(np.clip(colours, 0.0, 1.0) * ((1 << TEXEL_BITS) - 1)).astype(np.int64)
+    packed: NDArray[np.int64] = whole[:, 0] | whole[:, 1] << LANE | whole[:, 2] << 2 * LANE
+    return packed
+
+
+def _unpacked(texels: NDArray[np.int64]) -> NDArray[np.float32]:
+    """Return what was packed, to half a unit."""
+    full = (1 << TEXEL_BITS) - 1
+    return np.stack([texels >> k * LANE & full for k in range(3)], axis=-1).astype(np.float32) / np.float32(full)
+
+
 def ground_looks_of(ground: GroundMap, textures: Textures) -> GroundLooks:
     """Return the ground with averages of its colours over 4, 8, 16 … cells."""
-    means = textures.texels[textures.starts[-1] :]
+    means = _unpacked(textures.texels[textures.starts[-1] :])
     colours = ground.colours * means[ground.materials]
     level = _block_means(ground.codes, colours)
     levels, layout, start = [], [], 0
@@ -93,8 +112,7 @@ def surfaces_of(library: Library, instances: Instances) -> Surfaces:
     faces = np.concatenate(
         [
             corners[:, 0],
-            corners[:, 1] - corners[:, 0],
-            corners[:, 2] - corners[:, 0],
+            *_weight_slopes(corners),
             library.normals.reshape(count, 9),
             library.uvs.reshape(count, 6),
             library.colours,
@@ -105,3 +123,15 @@ def surfaces_of(library: Library, instances: Instances) -> Surfaces:
     )
     stands = np.column_stack([instances.places, instances.turns, 1.0 / instances.scales, instances.tints])
     return Surfaces(np.ascontiguousarray(faces), np.ascontiguousarray(stands, np.float64))
+
+
+def _weight_slopes(corners: NDArray[np.float32]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return how the weights of triangles' second and third corners grow along each axis, shape (n, 3) each.
+
+    Args:
+        corners: Of the triangles, metres, shape (n, 3, 3).
+    """
+    e, f = (corners[:, k].astype(np.float64) - corners[:, 0] for k in (1, 2))
+    ee, ff, ef = (np.einsum("ij,ij->i", a, b)[:, None] for a, b in ((e, e), (f, f), (e, f)))
+    inverse = 1.0 / np.maximum(ee * ff - ef * ef, 1e-18)
+    return (ff * e - ef * f) * inverse, (ee * f - ef * e) * inverse

@@ -171,6 +171,7 @@ class Renderer:
                 wanted,
                 np.empty(4, np.int32),
                 np.empty(4, np.int32),
+                np.empty((4, colour.shape[1])),
                 step,
                 rows,
                 colour,

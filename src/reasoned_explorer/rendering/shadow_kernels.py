@@ -28,6 +28,9 @@ REACH_M, FADE_M = 420.0, 320.0
 _FINE_REACH_M = 48.0
 _PER_METRE = 100.0  # heights are kept in centimetres, plus 1; 0 is nothing
 _BIAS_M = 0.025
+#: Texels along the side of a tile's block, of which the lowest and the highest are known; a look-up takes so many.
+_BLOCK_SHIFT, _TAPS = 3, 4
+BLOCKS = (SIDE >> _BLOCK_SHIFT) + 1
 
 
 class ShadowMaps(NamedTuple):
@@ -38,22 +41,33 @@ class ShadowMaps(NamedTuple):
             to the north for each metre of height, shape (4,).
         fine_pages: Place of each fine tile in ``fine``, or -1, shape (rows, columns), int32.
         fine: Heights, shape (tiles, SIDE + 2 · MARGIN, likewise), uint16.
+        fine_limits: The lowest and the highest that any look-up finds which begins in a block of 8 × 8 texels, shape
+            (tiles, BLOCKS, BLOCKS, 2), uint16: most places are all in the sun or all in the shade.
         coarse_pages: Likewise.
         coarse: Likewise.
+        coarse_limits: Likewise.
     """
 
     frame: NDArray[np.float64]
     fine_pages: NDArray[np.int32]
     fine: NDArray[np.uint16]
+    fine_limits: NDArray[np.uint16]
     coarse_pages: NDArray[np.int32]
     coarse: NDArray[np.uint16]
+    coarse_limits: NDArray[np.uint16]
 
 
 @inlined
-def _filtered(tiles: NDArray[np.uint16], page: int, u: float, v: float, height: int) -> float:
+def _filtered(
+    tiles: NDArray[np.uint16], limits: NDArray[np.uint16], page: int, u: float, v: float, height: int
+) -> float:
     """The share of 3 × 3 texels around a point (in texels) that nothing higher than ``height`` darkens, smoothly."""
     left, low = math.floor(u), math.floor(v)
     first, row = left + MARGIN - 1, low + MARGIN - 1
+    if limits[page, row >> _BLOCK_SHIFT, first >> _BLOCK_SHIFT, 1] <= height:
+        return 1.0
+    if limits[page, row >> _BLOCK_SHIFT, first >> _BLOCK_SHIFT, 0] > height:
+        return 0.0
     lit = 0
     fu, fv = u - left, v - low
     total = 0.0
@@ -75,8 +89,10 @@ def sunlight_at(
     frame: NDArray[np.float64],
     fine_pages: NDArray[np.int32],
     fine_tiles: NDArray[np.uint16],
+    fine_limits: NDArray[np.uint16],
     coarse_pages: NDArray[np.int32],
     coarse_tiles: NDArray[np.uint16],
+    coarse_limits: NDArray[np.uint16],
     soft: bool,
     wanted: NDArray[np.uint8],
     x: float,
@@ -91,11 +107,13 @@ def sunlight_at(
     """The share of the sun's light that reaches a point, in [0, 1].
 
     Args:
-        frame: This and the next four are those of `ShadowMaps`.
+        frame: This and the next six are those of `ShadowMaps`.
         fine_pages: Likewise.
         fine_tiles: Likewise.
+        fine_limits: Likewise.
         coarse_pages: Likewise.
         coarse_tiles: Likewise.
+        coarse_limits: Likewise.
         soft: Whether coarse tiles do everywhere.
         wanted: Byte 0 is set where a tile is missing, and the byte of the tile: 1 + its place in the fine page table,
             then in the coarse one.
@@ -133,7 +151,10 @@ def sunlight_at(
     u -= column * SIDE + 0.5
     v -= row * SIDE + 0.5
     height = int((z + _BIAS_M) * _PER_METRE) + 1
-    share = _filtered(fine_tiles, page, u, v, height) if fine else _filtered(coarse_tiles, page, u, v, height)
+    if fine:
+        share = _filtered(fine_tiles, fine_limits, page, u, v, height)
+    else:
+        share = _filtered(coarse_tiles, coarse_limits, page, u, v, height)
     if distance > FADE_M:
         share += (1.0 - share) * (distance - FADE_M) / (REACH_M - FADE_M)
     return share
@@ -180,6 +201,18 @@ def _cast_triangle(corners: NDArray[np.float64], a: int, b: int, c: int, tile: N
             tile[row, column] = max(tile[row, column], height)
 
 
+@inlined
+def _limit(tile: NDArray[np.uint16], limits: NDArray[np.uint16]) -> None:
+    """Set the lowest and the highest of each block and of as much after it as a look-up takes."""
+    for j in range(BLOCKS):
+        for i in range(BLOCKS):
+            lowest, highest = tile[j << _BLOCK_SHIFT, i << _BLOCK_SHIFT], tile[j << _BLOCK_SHIFT, i << _BLOCK_SHIFT]
+            for row in range(j << _BLOCK_SHIFT, min((j + 1 << _BLOCK_SHIFT) + _TAPS - 1, tile.shape[0])):
+                for column in range(i << _BLOCK_SHIFT, min((i + 1 << _BLOCK_SHIFT) + _TAPS - 1, tile.shape[1])):
+                    lowest, highest = min(lowest, tile[row, column]), max(highest, tile[row, column])
+            limits[j, i, 0], limits[j, i, 1] = lowest, highest
+
+
 @kernel
 def cast(
     library: Library,
@@ -192,6 +225,7 @@ def cast(
     coarser: int,
     corners: NDArray[np.float64],
     tile: NDArray[np.uint16],
+    limits: NDArray[np.uint16],
 ) -> None:
     """Set a tile.
 
@@ -207,6 +241,7 @@ def cast(
         coarser: How many levels coarser than the finest things are drawn, where they have so many.
         corners: Room, shape (v, 3).
         tile: Set, shape (SIDE + 2 · MARGIN, likewise).
+        limits: Set, shape (BLOCKS, BLOCKS, 2); see `ShadowMaps`.
     """
     tile[:] = 0
     edge = (SIDE + MARGIN + 1) * texel
@@ -237,3 +272,4 @@ def cast(
                 library.triangles[triangle, 2] - first,
                 tile,
             )
+    _limit(tile, limits)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reasoned_explorer.rendering.scene import GROUND_ID, Scene
-from reasoned_explorer.rendering.shadow_kernels import COARSE_M, FINE_M, MARGIN, SIDE, ShadowMaps, cast
+from reasoned_explorer.rendering.shadow_kernels import BLOCKS, COARSE_M, FINE_M, MARGIN, SIDE, ShadowMaps, cast
 
 #: Tiles that are kept at most, of each size. One takes 135 kB.
 FINE_TILES, COARSE_TILES = 768, 512
@@ -36,7 +36,13 @@ class ShadowTiles:
         self._gate = _Gate()
         self._making = threading.Lock()
         self.maps = ShadowMaps(
-            np.concatenate([corner, shear]), self._fine.table, self._fine.tiles, self._coarse.table, self._coarse.tiles
+            np.concatenate([corner, shear]),
+            self._fine.table,
+            self._fine.tiles,
+            self._fine.limits,
+            self._coarse.table,
+            self._coarse.tiles,
+            self._coarse.limits,
         )
 
     @property
@@ -81,6 +87,7 @@ class ShadowTiles:
             pages.coarser,
             self._corners,
             pages.tiles[slot],
+            pages.limits[slot],
         )
         pages.table[row, column] = slot  # last: other threads read it
 
@@ -94,6 +101,7 @@ class _Pages:
         self.coarser = coarser
         side = SIDE + 2 * MARGIN
         self.tiles = np.empty((min(most, rows * columns), side, side), np.uint16)
+        self.limits = np.empty((len(self.tiles), BLOCKS, BLOCKS, 2), np.uint16)
         self._used = 0
 
     @property

@@ -7,11 +7,12 @@ person waits for all of it once. So here they are compiled by a shorter way, to 
 from collections.abc import Callable
 from copy import copy
 from functools import lru_cache
+from pathlib import Path
 from typing import Any, TypeVar
 
 from numba import njit
 from numba.core import types
-from numba.core.caching import FunctionCache
+from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 
@@ -109,10 +110,23 @@ class _Store(FunctionCache):  # type: ignore[misc]
     That is needed for what kernels do not have: memory management, and other objects than arrays and numbers.
     """
 
+    def __init__(self, function: Any) -> None:
+        super().__init__(function)
+        # Pieces of other files are in it too: numba itself looks only at the file of the function.
+        stamp = _sources(Path(function.__code__.co_filename).parent)
+        self._cache_file = IndexDataCacheFile(self._cache_path, self._impl.filename_base, stamp)
+
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the compiled kernel for types of arguments, or None where it is not kept; as numba's own."""
         with self._guard_against_spurious_io_errors():
             return self._load_overload(sig, target_context)
+
+
+@lru_cache
+def _sources(folder: Path) -> tuple[tuple[str, int, int], ...]:
+    """Return the state of a room's files and of this one: what is kept of any kernel holds as long as none changes."""
+    states = [(file.name, file.stat()) for file in (*sorted(folder.glob("*.py")), Path(__file__))]
+    return tuple((name, state.st_size, state.st_mtime_ns) for name, state in states)
 
 
 @lru_cache(maxsize=1)
