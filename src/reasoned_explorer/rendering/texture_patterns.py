@@ -143,16 +143,21 @@ def leaves(rng: Generator, count: int, length: float) -> tuple[Field, Field]:
     light, own = np.zeros((SIZE, SIZE)), np.zeros((SIZE, SIZE))
     for place in range(count):
         x, y, angle, shade, size = rng.random(5)
-        across, up = (u - x + 0.5) % 1.0 - 0.5, (v - y + 0.5) % 1.0 - 0.5
+        half = 0.5 * length * (0.75 + 0.5 * size)
+        # Only the texels near the leaf are looked at, over the texture's edges too.
+        reach = min(int(np.ceil(half * SIZE)) + 1, SIZE // 2 - 1)
+        near = np.arange(-reach, reach + 1)
+        window = np.ix_((int((1.0 - y) * SIZE) + near) % SIZE, (int(x * SIZE) + near) % SIZE)
+        across, up = (u[window] - x + 0.5) % 1.0 - 0.5, (v[window] - y + 0.5) % 1.0 - 0.5
         turn = 2.0 * np.pi * angle
         along, aside = across * np.cos(turn) + up * np.sin(turn), up * np.cos(turn) - across * np.sin(turn)
-        half = 0.5 * length * (0.75 + 0.5 * size)
         share = along / half
         # Two arcs that meet in points.
         inside = np.abs(aside) < 0.42 * half * (1.0 - share * share)
         # A fold along the middle: one side catches more light than the other.
         lit = (0.45 + 0.45 * place / count + 0.2 * (shade - 0.5)) * np.where(aside > 0.0, 1.0, 0.84)
-        light, own = np.where(inside, np.clip(lit, 0.0, 1.0), light), np.where(inside, shade, own)
+        light[window] = np.where(inside, np.clip(lit, 0.0, 1.0), light[window])
+        own[window] = np.where(inside, shade, own[window])
     return light, own
 
 
