@@ -14,8 +14,8 @@ from reasoned_explorer.rendering.texture_kernels import halvings, texel_at
 from reasoned_explorer.world.compiling import inlined, part
 
 _WATER = int(Material.WATER)
-_ASPHALT, _PAVING = int(Material.ASPHALT), int(Material.PAVING)
-_COBBLES, _CONCRETE = int(Material.COBBLES), int(Material.CONCRETE)
+#: Bits of materials, as in `shading_kernels`: on which rain stands.
+_HARD = 1 << Material.ASPHALT | 1 << Material.PAVING | 1 << Material.COBBLES | 1 << Material.CONCRETE
 #: Beyond this footprint of a pixel, squared, the ground is drawn from averages of its colours; cells of the ground map.
 _FINE_CELLS, _COARSE_CELLS = 2.0**2, 5.0**2
 
@@ -212,7 +212,7 @@ def ground_light(
     lit = tones[SUN, 2] * (1.0 - shadow * (1.0 - lit))
     wet = 0.0
     if wetness > 0.0 and material != _WATER:
-        wet = wetness if material in (_ASPHALT, _PAVING, _COBBLES, _CONCRETE) else 0.25 * wetness
+        wet = wetness if _HARD >> material & 1 else 0.25 * wetness
         dark = 1.0 - 0.4 * wet
         red, green, blue = red * dark, green * dark, blue * dark
     colour = (

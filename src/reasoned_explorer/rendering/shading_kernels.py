@@ -29,8 +29,10 @@ from reasoned_explorer.rendering.sky_kernels import (
 from reasoned_explorer.rendering.texture_kernels import Textures, texel_at
 from reasoned_explorer.world.compiling import inlined, kernel
 
-_WATER, _FOLIAGE, _PAINT, _LIT = int(Material.WATER), int(Material.FOLIAGE), int(Material.PAINT), int(Material.GLOW)
-_GLASS, _FACADE_GLASS = int(Material.GLASS), int(Material.FACADE_GLASS)
+_FOLIAGE, _PAINT, _LIT = int(Material.FOLIAGE), int(Material.PAINT), int(Material.GLOW)
+#: Bits of materials, since numba takes long over ``in``: which things tint, and which mirror.
+_OWN_COLOUR = 1 << Material.PAINT | 1 << Material.FOLIAGE
+_SHINY = 1 << Material.GLASS | 1 << Material.FACADE_GLASS | 1 << Material.WATER | 1 << Material.PAINT
 
 
 class Surfaces(NamedTuple):
@@ -108,7 +110,7 @@ def _surface(
     red *= faces[t, 24]
     green *= faces[t, 25]
     blue *= faces[t, 26]
-    if material in (_PAINT, _FOLIAGE):
+    if _OWN_COLOUR >> material & 1:
         red *= stands[i, 8]
         green *= stands[i, 9]
         blue *= stands[i, 10]
@@ -149,7 +151,7 @@ def _surface(
         blue
         * (near_ground * (tones[BOUNCE, 2] + up * (tones[SKYLIGHT, 2] - tones[BOUNCE, 2])) + lit * tones[SUNLIGHT, 2]),
     )
-    if material in (_GLASS, _FACADE_GLASS, _WATER, _PAINT):
+    if _SHINY >> material & 1:
         graze = 1.0 - max(facing, 0.0)
         graze *= graze
         graze *= graze
