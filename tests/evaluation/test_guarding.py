@@ -76,3 +76,26 @@ def test_where_the_machine_does_not_look_ahead_a_simulators_world_does(atlas: At
         address = vehicle_address(f"mavlink:udpout:127.0.0.1:{served.port}")
         assert address is not None
         _stands_before_the_wall(*_north(atlas, address, 30.0))
+
+
+def test_what_looking_compiles_and_loads_is_there_before_the_machine_is_connected_to(
+    atlas: Atlas, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looked: list[Pose] = []
+    content_of = Mission.content
+
+    def counting(mission: Mission):
+        content = content_of(mission)
+
+        def counted(pose, camera):
+            looked.append(pose)
+            return content(pose, camera)
+
+        return counted
+
+    monkeypatch.setattr(Mission, "content", counting)
+    # Nobody answers there: had it connected, it would have failed.
+    address = vehicle_address("mavlink:udpout:127.0.0.1:9")
+    assert address is not None
+    Mission("Find me a bench", atlas, MissionSettings(), start=HOME, guarding=Guarding(address, may_move=True))
+    assert looked == [HOME]

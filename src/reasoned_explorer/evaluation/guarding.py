@@ -64,11 +64,15 @@ class Guarding:
             remedy = "or give a --camera, where its wire has none"
             fault = Fault(f"no pictures come from {self.address}", expected, remedy)
             raise SettingsError("vehicle", [fault])
+        content = mission.content()
+        if content is not None:
+            # Once for nothing: what it compiles and loads would keep the machine's link waiting for as long.
+            content(mission.start, mission.profile.camera)
         errand = Errand(
             mission.clock,
             mission.start,
             shows,
-            mission.content(),
+            content,
             self.may_move,
             mission.origin,
             settings.picture_px,
