@@ -12,6 +12,7 @@ from reasoned_explorer.model import SettingsError, UnknownNameError
 from reasoned_explorer.serving.mavlink.pilot import ACCEPTED, DENIED, FAILED, REJECTED_NOW, Target
 from reasoned_explorer.serving.mavlink.server import AS_FAST_AS_ASKED, MavlinkServer
 from reasoned_explorer.vehicles import PROFILES
+from reasoned_explorer.vehicles.mavlink.approach import Approach
 from reasoned_explorer.vehicles.mavlink.dialect import Packer, Parser, dialect
 from reasoned_explorer.world.atlas import Atlas
 from tests.vehicles.mavlink.test_wire import framed
@@ -76,6 +77,66 @@ def test_setpoints_count_only_in_the_guided_mode(atlas):
         return heeded
 
     assert with_pilot(atlas, script, speed=AS_FAST_AS_ASKED) == [False, True]
+
+
+def test_a_velocity_that_is_not_said_anew_is_given_up(atlas):
+    async def script(pilot, now, said):
+        await airborne(pilot)
+        assert pilot.parameters["GUID_TIMEOUT"].value == 3.0
+        pilot.parameters.set("GUID_TIMEOUT", 0.5)
+        heeded, begun_s = [], pilot.now_s
+        for _ in range(10):
+            heeded.append(pilot.go_at(3.0, 0.0, 0.0))
+            await pilot.timeline.go_on_for(0.1)
+        going = pilot.is_busy
+        await pilot.timeline.go_on_for(2.0)
+        return heeded, going, pilot.is_busy, pilot.rests_since_s - begun_s, pilot.belief()
+
+    heeded, going, later, stood_s, here = with_pilot(atlas, script, speed=AS_FAST_AS_ASKED)
+    assert all(heeded)
+    assert (going, later) == (True, False)
+    assert stood_s == pytest.approx(0.9 + 0.5)
+    assert here.x_m > 51.0
+    assert here.y_m == pytest.approx(50.0, abs=0.5)  # it sways
+
+
+def placed(pilot):
+    here = pilot.belief()
+    return Pose(here.x_m, here.y_m, here.z_m, here.heading_rad)
+
+
+def test_led_by_velocities_it_flies_as_if_it_had_been_told_its_target(atlas):
+    target = Target(64.0, 50.0, 2.0)
+
+    async def told(pilot, now, said):
+        await airborne(pilot)
+        pilot.go(target)
+        await pilot.timeline.go_on_for(20.0)
+        return pilot.rests_since_s, pilot.belief()
+
+    async def led(pilot, now, said):
+        await airborne(pilot)
+        pilot.parameters.set("GUID_TIMEOUT", 0.5)
+        approach = Approach(placed(pilot), Pose(*target[:3]), PROFILES["drone"])
+        while (setpoint := approach.setpoint(placed(pilot))) is not None:
+            north_mps, east_mps, down_mps = setpoint.velocity_mps
+            pilot.go_at(east_mps, north_mps, -down_mps)
+            await pilot.timeline.go_on_for(0.1)
+        pilot.go(target)
+        await pilot.timeline.go_on_for(20.0)
+        return pilot.rests_since_s, pilot.belief()
+
+    more = {"speed": AS_FAST_AS_ASKED, "noise": "rtk-fixed", "seed": 3}
+    (told_s, there), (led_s, here) = with_pilot(atlas, told, **more), with_pilot(atlas, led, **more)
+    assert led_s == pytest.approx(told_s)
+    assert here == pytest.approx(there)
+
+
+def test_px4_is_not_served_velocities(atlas):
+    async def script(pilot, now, said):
+        return pilot.go_at(1.0, 0.0, 0.0)
+
+    assert not with_pilot(atlas, script, flavour="px4", speed=AS_FAST_AS_ASKED)
 
 
 def test_the_same_setpoint_again_changes_nothing(atlas):

@@ -117,6 +117,32 @@ def test_mission_time_is_the_simulators_time(atlas):
     assert server_s == pytest.approx(mission_s, abs=1e-6)
 
 
+@pytest.mark.parametrize("flavour", ["arducopter", "ardurover"])
+def test_an_ardupilot_gives_up_velocities_soon_while_it_is_driven(atlas, flavour):
+    async def script(vehicle):
+        return served.server.pilot.parameters["GUID_TIMEOUT"].value
+
+    with serve(atlas, flavour, speed=AS_FAST_AS_ASKED) as served:
+        assert flown(served, script, flavour=flavour) == 0.5
+        assert served.server.pilot.parameters["GUID_TIMEOUT"].value == 3.0
+
+
+def test_one_that_has_no_such_parameter_is_told_positions(atlas):
+    def older():
+        server = MavlinkServer(atlas, HOME, flavour="ardurover", speed=AS_FAST_AS_ASKED)
+        parameters = server.pilot.parameters
+        parameters.names = tuple(name for name in parameters.names if name != "GUID_TIMEOUT")
+        del parameters._all["GUID_TIMEOUT"]
+        return server
+
+    async def script(vehicle):
+        return await vehicle.go_to(Pose(53.0, 50.0))
+
+    with BackgroundServer(older) as served:
+        leg = flown(served, script, flavour="ardurover", settings=replace(SETTINGS, reply_s=1.0))
+    assert leg.outcome is LegOutcome.ARRIVED
+
+
 def test_what_stands_in_the_way_ends_the_leg_and_the_next_one_goes_on(atlas):
     async def script(vehicle):
         return await vehicle.go_to(Pose(50.0, 75.0)), await vehicle.go_to(Pose(50.0, 60.0)), vehicle.pose

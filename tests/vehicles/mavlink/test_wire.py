@@ -79,6 +79,8 @@ def test_masks_say_what_counts():
     assert Setpoint(1.0, 2.0, -3.0, 0.5).mask == 2552  # ArduPilot's documentation: position and yaw
     assert Setpoint(1.0, 2.0, -3.0).mask == 3576  # position
     assert Setpoint().mask == 3527  # velocity
+    assert Setpoint(velocity_mps=(1.0, 0.0, 0.0)).mask == 3527
+    assert Setpoint(yaw_rad=0.5, velocity_mps=(1.0, 0.0, 0.0)).mask == 3527 - 1024  # and yaw
     assert Setpoint(yaw_rad=0.5).mask == 2559  # yaw
 
 

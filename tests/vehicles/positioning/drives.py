@@ -183,8 +183,9 @@ def rms(values: np.ndarray) -> float:
 
 
 def told(truth: Truth) -> LocalizerSettings:
-    """Return the settings of a localizer that is told how the receiver really errs."""
-    return LocalizerSettings(track=TrackSettings(receivers={**RECEIVERS, truth.quality: truth.model}))
+    """Return the settings of a localizer that is told how the receiver really errs, and learns nothing."""
+    receivers = {**RECEIVERS, truth.quality: truth.model}
+    return LocalizerSettings(track=TrackSettings(receivers=receivers, worst_fix_factor=1.0))
 
 
 def credulous(truth: Truth) -> LocalizerSettings:

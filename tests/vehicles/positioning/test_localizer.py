@@ -105,6 +105,15 @@ def test_with_errors_as_real_receivers_have_them_it_is_about_as_good_as_one_that
     assert rms(ours.says_m) < 4.0 * rms(best.says_m)
 
 
+def test_a_receiver_that_is_twice_as_bad_as_its_kind_and_does_not_tell_is_found_out():
+    truth, path = TRUTHS["RTK float, disturbed"], walk(120.0)
+    said = readings(path, truth, 7, tells_sigma=False)
+    learns = follow(path, said, LocalizerSettings())
+    believes = follow(path, said, LocalizerSettings(track=TrackSettings(worst_fix_factor=1.0)))
+    assert rms(learns.says_m) > 1.5 * rms(believes.says_m)
+    assert rms(learns.position_m) < rms(believes.position_m)
+
+
 def test_one_that_takes_lasting_errors_for_new_ones_lies():
     truth, path = TRUTHS["RTK float"], walk(120.0)
     errors = follow(path, readings(path, truth, 7, tells_sigma=False), credulous(truth))

@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 
+import pytest
+
 from reasoned_explorer.clock import Clock, VirtualClock
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import PartError
@@ -31,6 +33,7 @@ from reasoned_explorer.vehicles.unitree.settings import WalkSettings
 from reasoned_explorer.vehicles.unitree.vehicle import UnitreeVehicle
 from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.world import Building
+from tests.vehicles.unitree.walked_go2 import SteppedGo2, WalkedGo2
 from tests.world.worlds import box
 from tests.world.worlds import field as meadow_of
 
@@ -132,8 +135,8 @@ def sight_of(atlas: Atlas) -> Callable[[Pose], float | None]:
     return lambda pose: atlas.sight.cast(pose.x_m, pose.y_m, max(0.3, pose.z_m), pose.heading_rad, 40.0)[0]
 
 
-#: What an autopilot is set to, so that it stands soon where nobody is heard. ArduPilot's drones wait for two seconds at
-#: least, its rovers for three.
+#: What an autopilot is set to, so that it stays where it stands where nobody is heard. ArduPilot's failsafe comes after
+#: two seconds at least, its rovers' after three: until then they must have come to stand without it.
 SOONEST = {"FS_GCS_ENABLE": 7.0, "FS_GCS_TIMEOUT": 2.0, "FS_TIMEOUT": 1.0, "FS_ACTION": 2.0, "COM_OF_LOSS_T": 0.5}
 
 
@@ -172,7 +175,9 @@ def mavlink(flavour: str) -> Callable[[Atlas, str, Sequence[Mishap]], AbstractCo
                 return Pose(state.x_m, state.y_m, state.z_m, state.heading_rad)
 
             def simulated_s() -> float:
-                return served.server.pilot.now_s
+                # Nobody lets its time go on where its link is lost: it runs on to its failsafe.
+                pilot = served.server.pilot
+                return pilot.now_s if pilot.is_busy else pilot.rests_since_s
 
             yield Ready(make, PROFILES[profile], clock, true_pose, simulated_s, sight_of(atlas))
 
@@ -208,6 +213,38 @@ def go1(atlas: Atlas, profile: str, mishaps: Sequence[Mishap]) -> Iterator[Ready
         )
 
 
+@contextmanager
+def go2(atlas: Atlas, profile: str, mishaps: Sequence[Mishap]) -> Iterator[Ready]:
+    """The driver of a Go2 with a fake of its vendor's SDK, which is nowhere here."""
+    clock = VirtualClock()
+
+    def serve() -> WalkedGo2:
+        walker = Walker(atlas, PROFILES[profile], START, mishaps=mishaps)
+        return WalkedGo2(walker, GnssServer(walker.noise))
+
+    with BackgroundServer(serve) as served, pytest.MonkeyPatch.context() as patch:
+        robot = served.server
+        robot.install(patch)
+
+        def make(limited: VehicleProfile) -> Vehicle:
+            source = parse_source(f"gpsd://127.0.0.1:{robot.gnss_port}")
+            return UnitreeVehicle(
+                limited,
+                SteppedGo2(robot),
+                clock=clock,
+                home=START,
+                positions=Receiver(source, origin=robot.gnss.origin, now_s=clock.now_s),
+                camera=camera_for(mishaps),
+                settings=WalkSettings(poll_s=0.1),
+                content=NoEyes().look,
+            )
+
+        def true_pose() -> Pose:
+            return robot.walker.body.true_pose
+
+        yield Ready(make, PROFILES[profile], clock, true_pose, lambda: robot.moved_s, sight_of(atlas))
+
+
 @dataclass
 class Machine:
     """An entry of the table.
@@ -216,14 +253,12 @@ class Machine:
         make: Makes it ready for a world, a profile and what befalls it.
         profile: By name.
         lacks: The faults that do not exist for it, each with the reason.
-        alone_s: How much longer than a second it may take to stand by itself where nobody is heard.
         ahead_s: So far its simulator, stepped, may be ahead of the mission's clock: one poll of its driver.
     """
 
     make: Callable[[Atlas, str, Sequence[Mishap]], AbstractContextManager[Ready]]
     profile: str
     lacks: dict[str, str] = field(default_factory=dict)
-    alone_s: float = 0.0
     ahead_s: float = 0.0
 
 
@@ -231,8 +266,9 @@ MACHINES = {
     "embedded drone": Machine(embedded, "drone"),
     "embedded walker": Machine(embedded, "go1"),
     "AirSim drone": Machine(airsim, "drone", {"battery low": "AirSim's drones have no battery"}),
-    "MAVLink drone, ArduPilot": Machine(mavlink("arducopter"), "drone", alone_s=1.0, ahead_s=0.25),
+    "MAVLink drone, ArduPilot": Machine(mavlink("arducopter"), "drone", ahead_s=0.25),
     "MAVLink drone, PX4": Machine(mavlink("px4"), "drone", ahead_s=0.25),
-    "MAVLink rover, ArduPilot": Machine(mavlink("ardurover"), "go1", alone_s=2.0, ahead_s=0.25),
+    "MAVLink rover, ArduPilot": Machine(mavlink("ardurover"), "go1", ahead_s=0.25),
     "Unitree Go1": Machine(go1, "go1", ahead_s=0.1),
+    "Unitree Go2, fake SDK": Machine(go2, "go1", ahead_s=0.1),
 }

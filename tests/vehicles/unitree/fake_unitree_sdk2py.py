@@ -54,6 +54,17 @@ class FakeGo2:
         real = metadata.version
         monkeypatch.setattr(metadata, "version", lambda name: cyclonedds if name == "cyclonedds" else real(name))
 
+    def move(self, vx: float, vy: float, vyaw: float) -> int:
+        """Take a velocity; return the code that the SDK answers with, which does not wait for the robot's."""
+        self.velocity = (vx, vy, vyaw)
+        return self.code
+
+    def posture(self, mode: int | None) -> int:
+        """Stand still, in another posture or the same; return the robot's code."""
+        self.velocity = (0.0, 0.0, 0.0)
+        self.mode = self.mode if mode is None else mode
+        return self.code
+
     def __enter__(self) -> Self:
         self._thread.start()
         return self
@@ -82,8 +93,7 @@ class FakeGo2:
         )
         return SimpleNamespace(position=[self.x, self.y, 0.3], imu_state=imu, mode=self.mode)
 
-    @staticmethod
-    def _low_state() -> Any:
+    def _low_state(self) -> Any:
         motors = [SimpleNamespace(temperature=30 + number) for number in range(20)]
         return SimpleNamespace(bms_state=SimpleNamespace(soc=64), motor_state=motors)
 
@@ -111,8 +121,7 @@ class _SportClient:
 
     def Move(self, vx: float, vy: float, vyaw: float) -> int:  # noqa: N802
         self._robot.calls.append("Move")
-        self._robot.velocity = (vx, vy, vyaw)
-        return self._robot.code
+        return self._robot.move(vx, vy, vyaw)
 
     def StopMove(self) -> int:  # noqa: N802
         return self._posture("StopMove", None)
@@ -128,6 +137,4 @@ class _SportClient:
 
     def _posture(self, call: str, mode: int | None) -> int:
         self._robot.calls.append(call)
-        self._robot.velocity = (0.0, 0.0, 0.0)
-        self._robot.mode = self._robot.mode if mode is None else mode
-        return self._robot.code
+        return self._robot.posture(mode)

@@ -30,6 +30,8 @@ _LANDED_M = 0.05
 #: Nearer than this a point needs no flight to, metres.
 _THERE_M = 1e-6
 _MARGIN_M = 5.0
+#: Two ways that are nearer to each other at a moment are one so far, metres.
+_APART_M = 0.1
 #: Less than this is no time but the rounding of sums, seconds.
 _NO_TIME_S = 1e-6
 
@@ -41,8 +43,10 @@ class _Leg:
     start_s: float
     motion: Motion
     saved: object
-    again: Callable[[float], Motion]
+    again: Callable[[float | None], Motion]
     near: "Obstacles | None"
+    number: int
+    face: bool
 
 
 class Drone:
@@ -85,6 +89,7 @@ class Drone:
         self._body = Body(profile, self._noise, self.start, seed=self._seed, bounds=bounds, ground=ground)
         self._z_m = 0.0
         self._flight: Flight | None = None
+        self._way: _Leg | None = None  # what the flight is, where it is one to one point
         self._motions = 0
         self._accounted_s: float | None = None
         self.last_hit: tuple[float, Hit] | None = None
@@ -157,7 +162,36 @@ class Drone:
                 break
         points = _joined(rows)
         flight = Flight(now_s, points, elapsed_s, arrived, hit, lambda cut_s: self._leave_legs(legs, cut_s))
-        return self._begin(flight)
+        self._begin(flight)
+        self._way = legs[0] if len(path) == len(legs) == 1 else None
+        return flight
+
+    def fly_on(self, now_s: float, target: Pose, *, speed_mps: float, face: bool) -> Flight | None:
+        """Fly on to another point of the way that it is on, as if it had been sent there at once.
+
+        Returns:
+            The flight; None, and nothing has changed, where that would have taken it elsewhere until now: the point
+            lies in another direction, or it has begun to brake.
+        """
+        self._pass(now_s)
+        flight, way = self._flight, self._way
+        if flight is None or way is None or way.face != face or speed_mps != self._body.profile.speed_mps:
+            return None
+        elapsed_s, body = now_s - flight.start_s, self._body
+        body.restore(way.saved)
+        leg = self._leg(0.0, target, face=face, z_m=target.z_m, number=way.number)
+        points = _joined([_with_height(leg.motion, self._z_m, target.z_m, speed_mps)])
+        there, ends_s = flight.state(elapsed_s), float(points[-1, 0])
+        arrived, hit = leg.motion.end is End.ARRIVED, self._hit(leg, points)
+        other = Flight(flight.start_s, points, ends_s, arrived, hit, lambda cut_s: self._leave_legs([leg], cut_s))
+        here = other.state(elapsed_s)
+        if elapsed_s >= ends_s or math.dist(here[:3], there[:3]) > _APART_M:
+            body.restore(way.saved)
+            way.again(None)
+            return None
+        self._begin(other)
+        self._way = leg
+        return other
 
     def turn(self, now_s: float, heading_rad: float) -> Flight:
         """Turn in place."""
@@ -240,7 +274,7 @@ class Drone:
         self._accounted_s = now_s
 
     def _begin(self, flight: Flight) -> Flight:
-        self._flight = flight
+        self._flight, self._way = flight, None
         return flight
 
     def _note_hit(self, flight: Flight, elapsed_s: float) -> None:
@@ -255,8 +289,9 @@ class Drone:
         self._motions += 1
         return self._motions - 1
 
-    def _leg(self, start_s: float, target: Pose, *, face: bool, z_m: float) -> _Leg:
-        number, saved, here = self._next_motion(), self._body.save(), self._body.true_pose
+    def _leg(self, start_s: float, target: Pose, *, face: bool, z_m: float, number: int | None = None) -> _Leg:
+        number = self._next_motion() if number is None else number
+        saved, here = self._body.save(), self._body.true_pose
         noise = self._noise
         margin_m = _MARGIN_M + 4.0 * (noise.position_sigma_m + noise.wander_sigma_m)
         at_m = z_m if self.profile.flies else None
@@ -266,7 +301,7 @@ class Drone:
         def again(limit_s: float | None) -> Motion:
             return self._body.drive(target, leg=number, walls=walls, discs=discs, face=face, limit_s=limit_s)
 
-        return _Leg(start_s, again(None), saved, again, near)
+        return _Leg(start_s, again(None), saved, again, near, number, face)
 
     def _leave_legs(self, legs: Sequence[_Leg], elapsed_s: float) -> None:
         """Have the body be where it was so many seconds into a flight: the same draws once more, up to then."""

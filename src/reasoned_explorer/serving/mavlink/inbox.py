@@ -238,7 +238,10 @@ class Inbox:
         if has_yaw and not is_finite(target.heading_rad):
             return
         if not has_place and has_velocity and any((message.vx, message.vy, message.vz)):
-            return  # flying by velocity is not served
+            if is_finite(message.vx, message.vy, message.vz):
+                heading_rad = target.heading_rad if has_yaw else math.nan
+                self._pilot.go_at(message.vy, message.vx, -message.vz, heading_rad)
+            return
         if not (has_place or has_velocity or has_yaw):
             # What is left is a turn rate: nothing's stands; turning on and on is not served.
             if mask & NO_YAW_RATE or message.yaw_rate != 0.0:

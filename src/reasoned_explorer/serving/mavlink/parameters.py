@@ -53,6 +53,7 @@ class Parameters:
             made = {
                 "FS_GCS_ENABLE": Parameter(1.0, 0.0, 7.0),
                 "FS_GCS_TIMEOUT": Parameter(5.0, 2.0, 120.0),
+                "GUID_TIMEOUT": Parameter(3.0, 0.1, 5.0),
                 "LAND_SPEED": Parameter(100.0, 30.0, 200.0),
                 "SYSID_THISMAV": Parameter(1.0, 1.0, 255.0),
                 "WPNAV_SPEED": Parameter(100.0 * speed_mps, 5.0, 2000.0),
@@ -62,6 +63,7 @@ class Parameters:
                 "FS_ACTION": Parameter(2.0, 0.0, 2.0),
                 "FS_GCS_TIMEOUT": Parameter(5.0, 2.0, 120.0),
                 "FS_TIMEOUT": Parameter(1.5, 1.0, 100.0),
+                "GUID_TIMEOUT": Parameter(3.0, 0.1, 5.0),
                 "SYSID_THISMAV": Parameter(1.0, 1.0, 255.0),
                 "WP_SPEED": Parameter(speed_mps, 0.05, 100.0),
             }

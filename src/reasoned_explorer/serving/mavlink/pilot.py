@@ -11,6 +11,7 @@ from reasoned_explorer.serving.airsim.flight import Flight, State
 from reasoned_explorer.serving.airsim.timeline import Alarm, Timeline
 from reasoned_explorer.serving.mavlink.parameters import HOLD, HOME, LANDING, NOTHING, Parameters
 from reasoned_explorer.simulation.mishaps import MishapKind, Mishaps
+from reasoned_explorer.vehicles.control.follower import FollowerSettings
 from reasoned_explorer.vehicles.mavlink.flavours import Flavour
 
 #: Answers to commands, of the enumeration MAV_RESULT.
@@ -82,6 +83,9 @@ class Pilot:
         self.hits, self.hit = 0, ""
         self._target: Target | None = None
         self._alarms: list[Alarm] = []
+        self._lapse: Alarm | None = None
+        #: Since when it has not been on its way to anywhere, where it is not.
+        self.rests_since_s = 0.0
         self.motion_ends_s: float | None = None
         self._station_s: float | None = None
         self._setpoint_s: float | None = None
@@ -201,6 +205,7 @@ class Pilot:
         may = self.is_guided and self.is_armed
         if not may or (self.is_landed and self.flavour.flies and not self.flavour.is_px4):
             return False
+        self._forget_lapse()
         if target.is_same(self._target):
             return True
         self._target = target
@@ -221,8 +226,34 @@ class Pilot:
             self._target = target
         return True
 
+    def go_at(self, east_mps: float, north_mps: float, up_mps: float, heading_rad: float = math.nan) -> bool:
+        """Go with a velocity, where a program steers an ArduPilot; return whether it is heeded.
+
+        It is given up where it is not said anew within `GUID_TIMEOUT`. It is served as the way to where the machine
+        would then come to stand, with the speed that ways have.
+        """
+        if self.flavour.is_px4:
+            return False
+        lapse_s, speed_mps = self.parameters["GUID_TIMEOUT"].value, math.hypot(east_mps, north_mps)
+        if speed_mps > FASTEST_MPS:
+            return False
+        here, braking_mps2 = self.belief(), FollowerSettings.of(self.drone.profile).braking_mps2
+        for_s = lapse_s + speed_mps / (2.0 * braking_mps2)
+        place = here.x_m + east_mps * for_s, here.y_m + north_mps * for_s, here.z_m + up_mps * lapse_s
+        if not self.go(Target(*place, heading_rad)):
+            return False
+        if self.is_busy:
+            self._lapse = self.timeline.at(self.now_s + lapse_s, self.stand)
+        return True
+
+    def _forget_lapse(self) -> None:
+        lapse, self._lapse = self._lapse, None
+        if lapse is not None:
+            self.timeline.cancel(lapse)
+
     def stand(self) -> None:
         """Stop where it is."""
+        self._forget_lapse()
         self._drop()
         self._target = None
         self.drone.stop(self.now_s)
@@ -291,7 +322,13 @@ class Pilot:
             self._begin(lambda now_s: drone.climb(now_s, z_m))
             return
         pose = self._for_body(Pose(target.x_m, target.y_m, z_m, heading_rad))
-        self._begin(lambda now_s: drone.fly(now_s, [pose], speed_mps=self.speed_mps, face=face))
+        speed_mps = self.speed_mps
+
+        def begin(now_s: float) -> Flight:
+            flight = drone.fly_on(now_s, pose, speed_mps=speed_mps, face=face)
+            return flight or drone.fly(now_s, [pose], speed_mps=speed_mps, face=face)
+
+        self._begin(begin)
 
     def _come_home(self) -> None:
         home, z_m = self.drone.start, self.drone.state(self.now_s).z_m
@@ -327,6 +364,8 @@ class Pilot:
         self._alarms = [self.timeline.at(ends_s, over)]
 
     def _drop(self) -> None:
+        if self.is_busy:
+            self.rests_since_s = self.now_s
         alarms, self._alarms, self.motion_ends_s = self._alarms, [], None
         for alarm in alarms:
             self.timeline.cancel(alarm)

@@ -24,7 +24,7 @@ _TRIES = 3
 _HEARTBEAT_S, _LOOK_S = 1.0, 0.02
 #: PX4 takes its guided mode only where setpoints came for longer than a second.
 _STREAM_FIRST_S = 1.2
-_STREAM_PX4_HZ, _STREAM_HZ = 10.0, 1.0
+_STREAM_PX4_HZ, _STREAM_HZ = 10.0, 4.0
 _MAV_RESULTS = {
     1: "temporarily rejected",
     2: "denied",
@@ -323,8 +323,7 @@ class Autopilot:
         setpoint = self._setpoint
         if setpoint is None or self.taken or self._target is None or self.lost():
             return
-        boot_ms = round(self.now_s() * 1000.0) % 2**32
-        origin = self.settings.origin
+        boot_ms, origin = round(self.now_s() * 1000.0) % 2**32, self.settings.origin
         self.link.send(setpoint.message(self._dialect, self._to, boot_ms=boot_ms, origin=origin))
 
     async def _parameter(self, name: str, message: Callable[[], Any]) -> float:
@@ -350,7 +349,8 @@ class Autopilot:
             heard = self.telemetry.heartbeat
             is_px4 = heard is not None and heard.flavour is not None and heard.flavour.is_px4
             await asyncio.sleep(1.0 / (self.settings.stream_hz or (_STREAM_PX4_HZ if is_px4 else _STREAM_HZ)))
-            self._send_setpoint()
+            if self._setpoint is not None and self._setpoint.velocity_mps is None:  # whoever leads it says that anew
+                self._send_setpoint()
 
     # Hearing.
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 from reasoned_explorer.geometry import Pose, bearing_between_rad
 from reasoned_explorer.model import PartError
 from reasoned_explorer.vehicles.airsim.conventions import HomeFrame
+from reasoned_explorer.vehicles.mavlink.approach import Approach
 from reasoned_explorer.vehicles.mavlink.autopilot import PART, Autopilot
 from reasoned_explorer.vehicles.mavlink.pace import Moment, Pace
 from reasoned_explorer.vehicles.mavlink.setpoints import Setpoint, standing
@@ -81,6 +82,12 @@ class Manoeuvres:
     async def go(self, pose: Pose, *, turns: bool) -> None:
         """Have the machine go to a pose, or to its place alone."""
         await self.aim(self._setpoint(pose, turns=turns))
+
+    async def lead(self, approach: Approach) -> None:
+        """Have the machine go on towards a target for a moment, or near it to the target."""
+        if not approach.is_over:
+            setpoint = approach.setpoint(self.pose)
+            await self.aim(setpoint or self._setpoint(approach.target, turns=self._profile.flies))
 
     async def stand(self) -> None:
         """Have it stay where it is: PX4 holds a place, ArduPilot is told to stand."""

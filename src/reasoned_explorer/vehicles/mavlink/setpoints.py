@@ -25,6 +25,8 @@ class Setpoint:
         down_m: Likewise.
         yaw_rad: The heading to take, or NaN for any.
         by_turn_rate: Whether one that is to stand is told a turn rate of nothing rather than a velocity of nothing.
+        velocity_mps: How fast to go north, east and down where no position counts; ArduPilot gives it up where it does
+            not hear it anew.
     """
 
     north_m: float = math.nan
@@ -32,6 +34,7 @@ class Setpoint:
     down_m: float = math.nan
     yaw_rad: float = math.nan
     by_turn_rate: bool = False
+    velocity_mps: tuple[float, float, float] | None = None
 
     @property
     def mask(self) -> int:
@@ -41,6 +44,8 @@ class Setpoint:
             mask |= NO_YAW
         if not math.isnan(self.north_m):
             return mask | NO_VELOCITY
+        if self.velocity_mps is not None:
+            return mask | NO_POSITION
         if not math.isnan(self.yaw_rad):
             return mask | NO_POSITION | NO_VELOCITY  # turns in place
         if self.by_turn_rate:
@@ -57,7 +62,8 @@ class Setpoint:
             origin: Of the local frame, where the setpoint is to be sent as a position on earth.
         """
         place = [0.0 if math.isnan(one) else one for one in (self.north_m, self.east_m, self.down_m)]
-        rest = (*(0.0,) * 6, 0.0 if math.isnan(self.yaw_rad) else _wrapped(self.yaw_rad), 0.0)
+        velocity = self.velocity_mps or (0.0, 0.0, 0.0)
+        rest = (*velocity, *(0.0,) * 3, 0.0 if math.isnan(self.yaw_rad) else _wrapped(self.yaw_rad), 0.0)
         if origin is None or math.isnan(self.north_m):
             return dialect.MAVLink_set_position_target_local_ned_message(
                 boot_ms, *to, LOCAL_NED, self.mask, *place, *rest

@@ -21,7 +21,7 @@ class DriverSettings:
         component: Likewise.
         autopilot_system: Which system is meant, or 0 for the first autopilot that is heard.
         rate_hz: How often positions are asked for.
-        stream_hz: How often setpoints are sent; None for what the autopilot needs (10 for PX4, else 1).
+        stream_hz: How often setpoints are sent; None for what the autopilot needs (10 for PX4, else 4).
         takes_speed: Whether PX4's parameter for the greatest speed is set while the driver steers.
         lost_s: So many seconds without a heartbeat the link is lost.
         worst_error_m: Where the autopilot's receiver says that it errs by more, a guard takes the position for poor.

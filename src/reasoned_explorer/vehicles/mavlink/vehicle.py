@@ -14,6 +14,7 @@ from reasoned_explorer.vehicles.airsim.conventions import HomeFrame
 from reasoned_explorer.vehicles.control.legs import LegWatch
 from reasoned_explorer.vehicles.looking import Content, close_camera, open_camera, picture_age_s, turning_order
 from reasoned_explorer.vehicles.mavlink.address import Address
+from reasoned_explorer.vehicles.mavlink.approach import RENEW_S, Approach, Lapse
 from reasoned_explorer.vehicles.mavlink.autopilot import PART, Autopilot
 from reasoned_explorer.vehicles.mavlink.endings import crash_told, ending
 from reasoned_explorer.vehicles.mavlink.manoeuvres import Manoeuvres
@@ -74,7 +75,7 @@ class MavlinkVehicle(Vehicle):
         )
         self._legs = self._looks = 0
         self._is_connected = self._is_up = self._is_paced = False
-        self._speed = Speed(self.autopilot)
+        self._speed, self._lapse = Speed(self.autopilot), Lapse(self.autopilot)
         #: The last leg; after a cancelled or failed `go_to` the part of it that was travelled.
         self.last_leg: Leg | None = None
 
@@ -189,6 +190,7 @@ class MavlinkVehicle(Vehicle):
         self._is_up = True
         await self._pace.talk(self.autopilot.take_control)
         await self._pace.talk(lambda: self._speed.take(self.profile.speed_mps))
+        await self._pace.talk(self._lapse.take)
         if self.profile.flies:
             await self._body.rise()
 
@@ -220,6 +222,7 @@ class MavlinkVehicle(Vehicle):
                 await self._body.leave_safe()
             if was_up:
                 await self._pace.talk(self._speed.give_back)
+                await self._pace.talk(self._lapse.give_back)
             if self._is_paced:
                 self._is_paced = False
                 await self._pace.end()
@@ -313,8 +316,12 @@ class MavlinkVehicle(Vehicle):
 
     async def _travel(self, aim: Pose, watch: LegWatch) -> tuple[LegOutcome, str]:
         texts = self.autopilot.telemetry.texts_seen
-        await self._body.go(aim, turns=self.profile.flies)
-        outcome, detail = await self._follow(watch, texts)
+        approach = Approach(self._body.pose, aim, self.profile) if self._lapse.is_on else None
+        if approach is None:
+            await self._body.go(aim, turns=self.profile.flies)
+        else:
+            await self._body.lead(approach)
+        outcome, detail = await self._follow(watch, texts, approach)
         if self.autopilot.taken:
             return LegOutcome.STOPPED, self.autopilot.taken
         await self._body.stand()
@@ -332,8 +339,8 @@ class MavlinkVehicle(Vehicle):
     def _note(self, watch: LegWatch) -> None:
         watch.see(self._body.moment, self._body.moment.true)
 
-    async def _follow(self, watch: LegWatch, texts: int) -> tuple[LegOutcome, str]:
-        """Watch a leg to its end.
+    async def _follow(self, watch: LegWatch, texts: int, approach: Approach | None) -> tuple[LegOutcome, str]:
+        """Watch a leg to its end, and lead a machine that is led.
 
         Raises:
             PartError: If the link is lost on the way.
@@ -342,7 +349,9 @@ class MavlinkVehicle(Vehicle):
         limit_s = _PATIENCE * due_s + _PATIENCE_S + watch.settle_s
         hits, autopilot = self._body.moment.hits, self.autopilot
         while True:
-            await self._pace.until_idle(self.settings.poll_s)
+            await self._pace.until_idle(
+                self.settings.poll_s if approach is None else min(self.settings.poll_s, RENEW_S)
+            )
             await self._body.see()
             self._note(watch)
             moment = self._body.moment
@@ -354,6 +363,9 @@ class MavlinkVehicle(Vehicle):
                 return LegOutcome.STOPPED, autopilot.taken
             if lost := autopilot.lost():
                 raise PartError(PART, lost)
+            if approach is not None and not approach.is_over:
+                await self._body.lead(approach)
+                moment = replace(moment, is_busy=None)  # where it stops unless it is told more is not the end
             if ended := ending(watch, moment, limit_s=limit_s, turns_later=not self.profile.flies):
                 return ended
 

@@ -13,6 +13,7 @@ from reasoned_explorer.vehicles.positioning import abrupt, wander
 from reasoned_explorer.vehicles.positioning.fix import Fix, FixQuality
 from reasoned_explorer.vehicles.positioning.measurements import CompassReading, ImuSample, OdometryReading
 from reasoned_explorer.vehicles.positioning.receivers import ReceiverModel
+from reasoned_explorer.vehicles.positioning.scatter import Scatter
 from reasoned_explorer.vehicles.positioning.track_settings import TrackSettings
 
 Measurement = ImuSample | CompassReading | OdometryReading | Fix
@@ -92,12 +93,14 @@ class Track:
         self._refused: OdometryReading | None = None  # the last one, where that was refused
         self._moving_s = -math.inf  # when odometry was last believed
         self._receiver = settings.receivers[FixQuality.SINGLE]
+        self._scatter = Scatter(settings.worst_fix_factor)
         self._heading: tuple[float, float] | None = None  # with its sigma, until the filter begins
 
     def copy(self) -> "Track":
         """Return a track of its own that goes on from here."""
         other = copy.copy(self)
         other.fixes, other.compass = copy.copy(self.fixes), copy.copy(self.compass)
+        other._scatter = self._scatter.copy()
         if self.filter is not None:
             other.filter = copy.copy(self.filter)
             for name in ("settings_array", "state", "covariance", "rejects", "work"):
@@ -197,6 +200,12 @@ class Track:
         if self.filter is None:
             self._begin(fix, receiver)
             return
+        if fix.quality is not last:
+            self._scatter.forget()
+        elif self._scatter.note(self.filter, fix, receiver):
+            wander.doubt(self.filter, self._receiver, self._scatter.applied_to(receiver))
+            self._receiver = self._scatter.applied_to(receiver)
+        receiver = self._scatter.applied_to(receiver)
         wander.retune(self.filter, self._receiver, receiver)
         self._receiver = receiver
         off_m = wander.off_m(self.filter, fix)

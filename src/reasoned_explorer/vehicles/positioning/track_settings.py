@@ -28,6 +28,8 @@ class TrackSettings:
         compass_wander_tau_s: Correlation time of that, seconds.
         odometry_sigma_mps: White error of the odometry per axis.
         odometry_scale_sigma: Error of its scale, a share; counts where there are no fixes that would make up for it.
+        worst_fix_factor: Where fixes scatter more than their model or the receiver's word has it, the receiver is taken
+            to be worse by up to this factor; 1 has both believed.
         imu_hold_s: A turn rate is taken to go on for so long when none follows.
         rejects: So many refusals in a row make the filter start that part over.
 
@@ -47,6 +49,7 @@ class TrackSettings:
     compass_wander_tau_s: float = 120.0
     odometry_sigma_mps: float = 0.05
     odometry_scale_sigma: float = 0.03
+    worst_fix_factor: float = 4.0
     imu_hold_s: float = 0.15
     rejects: int = 20
 

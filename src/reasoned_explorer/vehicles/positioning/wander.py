@@ -28,6 +28,22 @@ def retune(filter_: PoseFilter, before: ReceiverModel, now: ReceiverModel) -> No
     filter_.settings_array[kernels.SET_WANDER_TAU] = now.wander_tau_s
 
 
+def doubt(filter_: PoseFilter, before: ReceiverModel, now: ReceiverModel) -> None:
+    """Have a filter take its fixes to have been of another size of error all the time.
+
+    What it knows of the place it knows from them: the place may be as much further off, the other way than the error.
+    """
+    more = now.wander_m**2 - before.wander_m**2
+    for place, slow in zip(PLACES, WANDERS, strict=True):
+        cov = filter_.covariance
+        cov[place, place] += more
+        cov[slow, slow] += more
+        cov[place, slow] -= more
+        cov[slow, place] -= more
+    filter_.settings_array[kernels.SET_WANDER_SIGMA] = now.wander_m
+    filter_.settings_array[kernels.SET_WANDER_TAU] = now.wander_tau_s
+
+
 def change(filter_: PoseFilter, fix: Fix, receiver: ReceiverModel) -> tuple[bool, float]:
     """Take in the first fix of another quality than the last, and return whether it was believed and how far it is off.
 

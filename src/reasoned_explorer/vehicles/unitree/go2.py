@@ -102,7 +102,7 @@ class Go2Robot(Robot):
             if self._now_s() > until_s:
                 await self.close(lies=False)
                 raise PartError(self.name, f"nothing was heard on {_SPORT_STATE} in {self._first_state_s:g} s")
-            await asyncio.sleep(0.02)
+            await self._pass(0.02)
         await self._call("StopMove")
         self._due_s = self._now_s()
         self._watching = asyncio.create_task(self._watch())
@@ -119,7 +119,7 @@ class Go2Robot(Robot):
         try:
             await self._call("StopMove", sport=sport)
             if lies:
-                await asyncio.sleep(1.0)
+                await self._pass(1.0)
                 await self._call("StandDown", sport=sport)
         finally:
             subscribers, self._subscribers = self._subscribers, []
@@ -137,7 +137,7 @@ class Go2Robot(Robot):
             self._moves = False
             await self._call("StopMove")
         self._due_s = max(self._due_s + self.period_s, self._now_s())
-        await asyncio.sleep(self._due_s - self._now_s())
+        await self._pass(self._due_s - self._now_s())
         age_s = self._now_s() - self._heard_s
         if age_s > _LOST_S:
             self._moves = False
@@ -148,7 +148,7 @@ class Go2Robot(Robot):
     async def get_up(self) -> None:
         """Have it rise, and stand in balance."""
         await self._call("StandUp")
-        await asyncio.sleep(self._posture_s)
+        await self._pass(self._posture_s)
         await self._call("BalanceStand")
         if (await self.moment(None)).lies:
             raise PartError(self.name, "it does not get up")
@@ -156,6 +156,10 @@ class Go2Robot(Robot):
     def cut(self, velocity: Velocity) -> Velocity:
         """Return what the limits leave of a velocity."""
         return velocity_within(self.limits, velocity)
+
+    async def _pass(self, seconds: float) -> None:
+        """Let time pass."""
+        await asyncio.sleep(seconds)
 
     def _open(self) -> None:
         from unitree_sdk2py.core.channel import ChannelFactoryInitialize, ChannelSubscriber
