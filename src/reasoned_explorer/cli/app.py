@@ -13,6 +13,7 @@ from reasoned_explorer.cli.minds_app import minds_app
 from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices, SampleAnew, Yes
 from reasoned_explorer.cli.serve_app import add_serve
 from reasoned_explorer.cli.vehicles_app import CameraAt, CameraFov, Fence, Gps, MaxSpeed, Ntrip, vehicles_app
+from reasoned_explorer.cli.view_app import add_view
 from reasoned_explorer.cli.worlds_app import worlds_app
 
 app = typer.Typer(
@@ -28,6 +29,7 @@ app.add_typer(vehicles_app, name="vehicle")
 add_commands(app)
 add_look(app)
 add_serve(app)
+add_view(app)
 
 
 def _version(*, value: bool) -> None:

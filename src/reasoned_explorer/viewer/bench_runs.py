@@ -1,0 +1,231 @@
+"""A run of ``rex bench`` as the page shows it. Nothing is written, neither in its store nor beside it."""
+
+import os
+import sqlite3
+import zlib
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+from reasoned_explorer.evaluation.bench.store import STORE_NAME, RunStore
+from reasoned_explorer.evaluation.report.causes import cause_among
+from reasoned_explorer.model import Fault, InputError, PartError, RecordError
+from reasoned_explorer.viewer.listing import Listing, opaque_id, outcome_word
+from reasoned_explorer.viewer.runs import MissionFiles, UnknownIdError
+from reasoned_explorer.viewer.security import within
+
+_FIGURES = (
+    *("score.level", "place", "goal", "score.success", "declared", "score.over_time", "compliant"),
+    *("score.oracle_success", "end", "score.spl", "score.casr", "score.computing_s", "score.travelling_s", "steps"),
+    *("score.path_length_m", "seed"),
+)
+#: A record is not larger than this once it is unpacked; what says otherwise is no record. Bytes.
+_LARGEST_RECORD = 1 << 28
+_BROKEN = "its row in the run cannot be read"
+_Key = tuple[str, str, str]
+_State = tuple[tuple[int, int, int], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Mission:
+    key: _Key
+    place: str
+
+
+@dataclass(frozen=True, slots=True)
+class _Read:
+    """What was read of a run, and in which state of its store."""
+
+    state: _State
+    listing: Listing
+    missions: Mapping[str, _Mission]
+    json: bytes
+
+
+class BenchRun:
+    """A run that `rex bench` made, finished or not; safe to use from several threads.
+
+    Args:
+        run_id: Made by the library.
+        name: For people.
+        folder: That holds its store.
+        root: What nothing may lead out of, resolved.
+    """
+
+    kind = "bench"
+
+    def __init__(self, run_id: str, name: str, folder: Path, *, root: Path) -> None:
+        self.id, self.name, self.folder = run_id, name, folder
+        self._root = root
+        self._lock = Lock()
+        self._about: tuple[_State, dict[str, Any]] | None = None
+        self._kept: _Read | None = None
+
+    def about(self) -> Mapping[str, Any]:
+        """Return what the list of runs says of it; with ``fault`` where it cannot be read."""
+        state = self._state()
+        if self._about is None or self._about[0] != state:
+            self._about = (state, self._read_about())
+        return self._about[1]
+
+    def _read_about(self) -> dict[str, Any]:
+        said: dict[str, Any] = {"id": self.id, "name": self.name, "kind": self.kind}
+        said |= {"missions": 0, "methods": [], "made_by": ""}
+        try:
+            with RunStore.read(self.folder) as store:
+                versions = store.about.get("versions", {})
+                said["made_by"] = str(versions.get("reasoned-explorer", ""))
+                said["missions"] = len(store.finished())
+                said["methods"] = list(store.plan.methods)
+        except (InputError, PartError, sqlite3.Error) as error:
+            said["fault"] = str(error)
+        return said
+
+    def listing(self) -> Listing:
+        """Return its missions; they are read again when the store has changed.
+
+        Raises:
+            InputError: If the store cannot be read.
+            PartError: If the disk fails.
+        """
+        return self._read().listing
+
+    def listing_json(self) -> bytes:
+        """Return the listing as the page reads it.
+
+        Raises:
+            InputError: If the store cannot be read.
+            PartError: If the disk fails.
+        """
+        return self._read().json
+
+    def mission(self, mission_id: str) -> MissionFiles:
+        """Return a mission.
+
+        Raises:
+            UnknownIdError: If there is no such mission.
+            RecordError: If its record was not kept, or cannot be read.
+        """
+        found = self._read().missions.get(mission_id)
+        if found is None:
+            raise UnknownIdError("mission", [Fault("there is no such mission in this run", "one that is listed")])
+        vehicle, method, name = found.key
+        with RunStore.read(self.folder) as store:
+            path = within(self._root, store.trace_path(*found.key))
+            place = None
+            with suppress(
+                InputError, KeyError
+            ):  # a plan of another version, say: the mission is shown without its world
+                place = store.plan.split.place(found.place)
+        if path is None:
+            raise RecordError("record", [Fault(f"no record of {name} by {method} was kept", "a run with records")])
+        return MissionFiles(
+            id=mission_id,
+            name=f"{name} · {method}",
+            record=_unpacked(path),
+            method=method,
+            pair_key=opaque_id(vehicle, name),
+            place=place,
+        )
+
+    def _read(self) -> _Read:
+        with self._lock:
+            state = self._state()
+            if self._kept is None or self._kept.state != state:
+                self._kept = self._read_store(state)
+            return self._kept
+
+    def _read_store(self, state: _State) -> _Read:
+        missions: dict[str, _Mission] = {}
+
+        def rows(store: RunStore) -> Iterator[list[Any]]:
+            records = _Records(store, self._root)
+            for vehicle, method, name, figures in store.figures(_FIGURES):
+                key = (vehicle, method, name)
+                mission_id = opaque_id(*key)
+                missions[mission_id] = _Mission(key, figures[1] if figures else "")
+                yield _cells(mission_id, key, figures, has_record=records.has(*key))
+
+        try:
+            with RunStore.read(self.folder) as store:
+                listing = Listing.of_cells(rows(store))
+        except sqlite3.Error as error:
+            what = f"{self.name} cannot be read: {error}"
+            raise RecordError("run", [Fault(what, "a run as rex bench leaves it")]) from error
+        about = {"id": self.id, "name": self.name, "kind": self.kind}
+        return _Read(state, listing, missions, listing.as_json(about))
+
+    def _state(self) -> _State:
+        """Return what changes when the store does."""
+        state = []
+        for name in (STORE_NAME, f"{STORE_NAME}-wal"):
+            with suppress(OSError):
+                found = (self.folder / name).stat()
+                state.append((found.st_mtime_ns, found.st_size, found.st_ino))
+        return tuple(state)
+
+
+class _Records:
+    """Which records are there, by looking into each folder once."""
+
+    def __init__(self, store: RunStore, root: Path) -> None:
+        self._store, self._root = store, root
+        self._there: dict[tuple[str, str], set[str]] = {}
+        self._names: dict[str, str] = {}
+
+    def has(self, vehicle: str, method: str, mission_id: str) -> bool:
+        name = self._names.get(mission_id)
+        if name is None:
+            name = self._names[mission_id] = self._store.trace_path(vehicle, method, mission_id).name
+        there = self._there.get((vehicle, method))
+        if there is None:
+            folder = within(self._root, self._store.trace_path(vehicle, method, mission_id).parent)
+            there = set()
+            with suppress(OSError):
+                there = {entry.name for entry in os.scandir(folder)} if folder else set()
+            self._there[vehicle, method] = there
+        return name in there
+
+
+def _cells(mission_id: str, key: _Key, figures: list[Any] | None, *, has_record: bool) -> list[Any]:
+    """Return the cells of a mission, as `COLUMNS`."""
+    vehicle, method, name = key
+    if figures is None:
+        return [mission_id, method, *[None] * 12, int(has_record), vehicle, name, None, _BROKEN]
+    level, place, goal, success, declared, over_time, compliant, oracle, end, *numbers, seed = figures
+    spl, casr, ct_s, tt_s, steps, path_length_m = numbers
+    fault = None
+    try:
+        cause = cause_among(
+            end,
+            success=bool(success),
+            declared=bool(declared),
+            over_time=bool(over_time),
+            compliant=compliant,
+            oracle_success=bool(oracle),
+        ).value
+    except ValueError:
+        cause, fault = None, _BROKEN
+    said = (outcome_word(success), cause, end, spl, casr, ct_s, tt_s, steps, path_length_m)
+    return [mission_id, method, level, place, goal, *said, int(has_record), vehicle, name, seed, fault]
+
+
+def _unpacked(path: Path) -> bytes:
+    """Return a record.
+
+    Raises:
+        RecordError: If it cannot be read, or is larger than any record is.
+    """
+    try:
+        unpacker = zlib.decompressobj()
+        data = unpacker.decompress(path.read_bytes(), _LARGEST_RECORD)
+    except (OSError, zlib.error) as error:
+        raise RecordError("record", [Fault(f"{path.name} cannot be read: {error}", "a compressed record")]) from error
+    if unpacker.unconsumed_tail:
+        raise RecordError(
+            "record", [Fault(f"{path.name} is too large for a record", f"at most {_LARGEST_RECORD} bytes")]
+        )
+    return data
