@@ -125,7 +125,7 @@ class BenchRun:
         return MissionFiles(
             id=mission_id,
             name=f"{name} · {method}",
-            record=_unpacked(path),
+            record=unpacked(path),
             method=method,
             pair_key=opaque_id(vehicle, name),
             place=place,
@@ -213,7 +213,7 @@ def _cells(mission_id: str, key: _Key, figures: list[Any] | None, *, has_record:
     return [mission_id, method, level, place, goal, *said, int(has_record), vehicle, name, seed, fault]
 
 
-def _unpacked(path: Path) -> bytes:
+def unpacked(path: Path) -> bytes:
     """Return a record.
 
     Raises:
