@@ -8,6 +8,7 @@ import typer
 from reasoned_explorer import __version__
 from reasoned_explorer.cli.answers import answering
 from reasoned_explorer.cli.bench_app import add_commands
+from reasoned_explorer.cli.export_app import add_export
 from reasoned_explorer.cli.look_app import add_look
 from reasoned_explorer.cli.minds_app import minds_app
 from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices, SampleAnew, Yes
@@ -27,6 +28,7 @@ app.add_typer(worlds_app, name="worlds")
 app.add_typer(minds_app, name="minds")
 app.add_typer(vehicles_app, name="vehicle")
 add_commands(app)
+add_export(app)
 add_look(app)
 add_serve(app)
 add_view(app)

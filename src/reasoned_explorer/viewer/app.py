@@ -1,6 +1,5 @@
 """The web application: what is asked for under which address."""
 
-import re
 from collections.abc import Iterable
 from importlib.resources import files
 from pathlib import Path
@@ -13,13 +12,13 @@ from starlette.exceptions import HTTPException as StarletteHTTPException
 
 from reasoned_explorer import __version__
 from reasoned_explorer.model import InputError, PartError, ReasonedExplorerError
+from reasoned_explorer.viewer.ids import checked_id
 from reasoned_explorer.viewer.library import Library
 from reasoned_explorer.viewer.live import LiveFeed
-from reasoned_explorer.viewer.replay import replay_json
+from reasoned_explorer.viewer.mission_routes import Desk, mission_routes
 from reasoned_explorer.viewer.runs import UnknownIdError
 from reasoned_explorer.viewer.security import Guard
 
-_ID = re.compile(r"[a-z0-9-]{1,64}")
 _JSON = "application/json"
 
 
@@ -41,6 +40,7 @@ def create_app(
     add_error_answers(app)
     app.include_router(_about_routes(library, guard, live))
     app.include_router(_run_routes(library))
+    app.include_router(mission_routes(Desk(library)))
     if live is not None:
         from reasoned_explorer.viewer.live_routes import live_routes
 
@@ -70,6 +70,8 @@ def add_error_answers(app: FastAPI) -> None:
     app.add_exception_handler(StarletteHTTPException, refused)
     app.add_exception_handler(ReasonedExplorerError, not_ours)
     app.add_exception_handler(RequestValidationError, not_valid)
+    # Beyond this, the server's own answer to it is not for people; the guard notes what happened.
+    app.add_exception_handler(Exception, refused)
 
 
 def _status_of(error: Exception) -> int:
@@ -77,17 +79,6 @@ def _status_of(error: Exception) -> int:
         return 404
     # What lies in the folder is at fault, not whoever asks; and a disk that fails may work again.
     return 422 if isinstance(error, InputError) else 503 if isinstance(error, PartError) else 500
-
-
-def checked_id(text: str) -> str:
-    """Return an id.
-
-    Raises:
-        UnknownIdError: If it does not look like one.
-    """
-    if not _ID.fullmatch(text):
-        raise HTTPException(404, "that is no id")
-    return text
 
 
 def _about_routes(library: Library, guard: Guard, live: LiveFeed | None) -> APIRouter:
@@ -125,10 +116,6 @@ def _run_routes(library: Library) -> APIRouter:
     @router.get("/{run}")
     def one_run(run: str) -> Response:
         return Response(library.run(checked_id(run)).listing_json(), media_type=_JSON)
-
-    @router.get("/{run}/missions/{mission}")
-    def one_mission(run: str, mission: str) -> Response:
-        return Response(replay_json(library.run(checked_id(run)).mission(checked_id(mission))), media_type=_JSON)
 
     return router
 

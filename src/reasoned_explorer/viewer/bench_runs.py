@@ -13,6 +13,7 @@ from typing import Any
 from reasoned_explorer.evaluation.bench.store import STORE_NAME, RunStore
 from reasoned_explorer.evaluation.report.causes import cause_among
 from reasoned_explorer.model import Fault, InputError, PartError, RecordError
+from reasoned_explorer.task.split import Split
 from reasoned_explorer.viewer.listing import Listing, opaque_id, outcome_word
 from reasoned_explorer.viewer.runs import MissionFiles, UnknownIdError
 from reasoned_explorer.viewer.security import within
@@ -63,6 +64,7 @@ class BenchRun:
         self._lock = Lock()
         self._about: tuple[_State, dict[str, Any]] | None = None
         self._kept: _Read | None = None
+        self._split: tuple[_State, Split | None] | None = None
 
     def about(self) -> Mapping[str, Any]:
         """Return what the list of runs says of it; with ``fault`` where it cannot be read."""
@@ -115,11 +117,7 @@ class BenchRun:
         vehicle, method, name = found.key
         with RunStore.read(self.folder) as store:
             path = within(self._root, store.trace_path(*found.key))
-            place = None
-            with suppress(
-                InputError, KeyError
-            ):  # a plan of another version, say: the mission is shown without its world
-                place = store.plan.split.place(found.place)
+            split = self._split_of(store)
         if path is None:
             raise RecordError("record", [Fault(f"no record of {name} by {method} was kept", "a run with records")])
         return MissionFiles(
@@ -128,8 +126,19 @@ class BenchRun:
             record=unpacked(path),
             method=method,
             pair_key=opaque_id(vehicle, name),
-            place=place,
+            place=split.place(found.place) if split and found.place in split.world_digests else None,
         )
+
+    def _split_of(self, store: RunStore) -> Split | None:
+        """Return the episodes of the run; None where another version wrote them: missions are shown without worlds."""
+        state = self._state()
+        kept = self._split
+        if kept is None or kept[0] != state:
+            split = None
+            with suppress(InputError, KeyError, ValueError):
+                split = store.plan.split
+            kept = self._split = (state, split)
+        return kept[1]
 
     def _read(self) -> _Read:
         with self._lock:

@@ -146,10 +146,11 @@ class _Guarded:
             if scope["type"] == "lifespan":
                 await self._app(scope, receive, send)
             return  # nothing here speaks over web sockets
-        begun = False
+        begun = ended = False
 
         async def safely(message: Message) -> None:
-            nonlocal begun
+            nonlocal begun, ended
+            ended = message["type"] == "http.response.body" and not message.get("more_body", False)
             if message["type"] == "http.response.start":
                 begun = True
                 given = {name.lower() for name, _ in message.get("headers", ())}
@@ -168,6 +169,8 @@ class _Guarded:
         except Exception as error:
             # What went wrong is for whoever runs the server, not for whoever asks.
             _log.exception("%s %s failed", scope["method"], scope["path"])
+            if ended:
+                return
             if begun:
                 raise
             await _answer(
