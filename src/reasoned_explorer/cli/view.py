@@ -3,16 +3,19 @@
 import os
 import threading
 import webbrowser
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from reasoned_explorer.cli.answers import complain
 from reasoned_explorer.cli.console import Output
+from reasoned_explorer.evaluation.record_file import RECORD_NAME
 from reasoned_explorer.model import Fault, Gathering, SettingsError
 from reasoned_explorer.model.stopping import on_stop, stop_if_asked
 from reasoned_explorer.viewer.library import Library
+from reasoned_explorer.viewer.live import LiveFeed
 from reasoned_explorer.viewer.security import Guard
 from reasoned_explorer.viewer.serving import Server, import_web
 
@@ -41,20 +44,21 @@ class PageOptions:
         found.finish("page")
         return guard
 
-    def started(self, app: Any) -> Server:
+    def started(self, app: Any, *, before_stop: Callable[[], object] = lambda: None) -> Server:
         """Return a server that serves an application.
 
         Raises:
             SettingsError: If the address cannot be listened on.
             MissingDependencyError: If the web server is not installed.
         """
-        server = Server(app, host=self.host, port=USUAL_PORT if self.port is None else self.port)
+        port = USUAL_PORT if self.port is None else self.port
+        server = Server(app, host=self.host, port=port, before_stop=before_stop)
         try:
             server.start()
         except SettingsError:
             if self.port is not None:
                 raise
-            server = Server(app, host=self.host)
+            server = Server(app, host=self.host, before_stop=before_stop)
             server.start()
         return server
 
@@ -81,6 +85,38 @@ def view_folder(folder: Path, options: PageOptions) -> None:
     )
 
 
+@contextmanager
+def page_beside(folder: Path, options: PageOptions) -> Iterator[Callable[[], None]]:
+    """Show a mission while it writes its record; gives what waits, when the mission is over, until a person ends it.
+
+    Args:
+        folder: That the record will be in; it need not be there yet.
+        options: Where the page is served.
+
+    Raises:
+        InputError: If an option is wrong, or the address cannot be listened on.
+        MissingDependencyError: If the extra ``view`` is not installed.
+    """
+    guard = options.guard()
+    import_web("fastapi")
+    from reasoned_explorer.viewer.app import create_app, guarded
+
+    feed = LiveFeed(folder.resolve() / RECORD_NAME)
+    library = Library(folder, is_awaited=True)
+    app = guarded(create_app(library, guard=guard, live=feed), guard)
+    server = options.started(app, before_stop=feed.close)
+
+    def wait() -> None:
+        Output().print(f"still shown at {server.url}; Ctrl-C ends it", markup=False, soft_wrap=True)
+        wait_for_stop()
+
+    try:
+        tell(server, guard, options, lambda url: f"watch it at {url}", ending="")
+        yield wait
+    finally:
+        server.stop()
+
+
 def serve_until_stopped(app: Any, guard: Guard, options: PageOptions, said: Callable[[str], str]) -> None:
     """Serve an application until a person ends it.
 
@@ -103,10 +139,12 @@ def serve_until_stopped(app: Any, guard: Guard, options: PageOptions, said: Call
     stop_if_asked()
 
 
-def tell(server: Server, guard: Guard, options: PageOptions, said: Callable[[str], str]) -> None:
+def tell(
+    server: Server, guard: Guard, options: PageOptions, said: Callable[[str], str], *, ending: str = "; Ctrl-C ends it"
+) -> None:
     """Say where a page is served, and open it where that was asked for."""
     url = server.url + (f"?token={guard.token}" if guard.token is not None else "")
-    Output().print(f"{said(url)}; Ctrl-C ends it", markup=False, soft_wrap=True)
+    Output().print(f"{said(url)}{ending}", markup=False, soft_wrap=True)
     if guard.token is not None:
         complain("note: whoever has that address and its token sees the missions; what is sent is not encrypted")
     if options.opens and not webbrowser.open(url):

@@ -1,39 +1,30 @@
 """A run of ``rex bench`` as the page shows it. Nothing is written, neither in its store nor beside it."""
 
-import os
 import sqlite3
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
-from typing import Any
+from typing import Any, NamedTuple
 
 from reasoned_explorer.evaluation.bench.store import STORE_NAME, RunStore
-from reasoned_explorer.evaluation.report.causes import cause_among
 from reasoned_explorer.model import Fault, InputError, PartError, RecordError
 from reasoned_explorer.task.split import Split
-from reasoned_explorer.viewer.listing import Listing, opaque_id, outcome_word
+from reasoned_explorer.viewer.bench_columns import Key, read_columns
+from reasoned_explorer.viewer.listing import Listing, opaque_id
 from reasoned_explorer.viewer.runs import MissionFiles, UnknownIdError
 from reasoned_explorer.viewer.security import within
 
-_FIGURES = (
-    *("score.level", "place", "goal", "score.success", "declared", "score.over_time", "compliant"),
-    *("score.oracle_success", "end", "score.spl", "score.casr", "score.computing_s", "score.travelling_s", "steps"),
-    *("score.path_length_m", "seed"),
-)
 #: A record is not larger than this once it is unpacked; what says otherwise is no record. Bytes.
 _LARGEST_RECORD = 1 << 28
-_BROKEN = "its row in the run cannot be read"
-_Key = tuple[str, str, str]
 _State = tuple[tuple[int, int, int], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class _Mission:
-    key: _Key
-    place: str
+class _Mission(NamedTuple):
+    key: Key
+    place: str | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,22 +139,14 @@ class BenchRun:
             return self._kept
 
     def _read_store(self, state: _State) -> _Read:
-        missions: dict[str, _Mission] = {}
-
-        def rows(store: RunStore) -> Iterator[list[Any]]:
-            records = _Records(store, self._root)
-            for vehicle, method, name, figures in store.figures(_FIGURES):
-                key = (vehicle, method, name)
-                mission_id = opaque_id(*key)
-                missions[mission_id] = _Mission(key, figures[1] if figures else "")
-                yield _cells(mission_id, key, figures, has_record=records.has(*key))
-
         try:
             with RunStore.read(self.folder) as store:
-                listing = Listing.of_cells(rows(store))
+                columns, keys = read_columns(store, self._root)
         except sqlite3.Error as error:
             what = f"{self.name} cannot be read: {error}"
             raise RecordError("run", [Fault(what, "a run as rex bench leaves it")]) from error
+        listing = Listing.of_columns(columns)
+        missions = dict(zip(columns["id"], map(_Mission, keys, columns["place"]), strict=True))
         about = {"id": self.id, "name": self.name, "kind": self.kind}
         return _Read(state, listing, missions, listing.as_json(about))
 
@@ -175,51 +158,6 @@ class BenchRun:
                 found = (self.folder / name).stat()
                 state.append((found.st_mtime_ns, found.st_size, found.st_ino))
         return tuple(state)
-
-
-class _Records:
-    """Which records are there, by looking into each folder once."""
-
-    def __init__(self, store: RunStore, root: Path) -> None:
-        self._store, self._root = store, root
-        self._there: dict[tuple[str, str], set[str]] = {}
-        self._names: dict[str, str] = {}
-
-    def has(self, vehicle: str, method: str, mission_id: str) -> bool:
-        name = self._names.get(mission_id)
-        if name is None:
-            name = self._names[mission_id] = self._store.trace_path(vehicle, method, mission_id).name
-        there = self._there.get((vehicle, method))
-        if there is None:
-            folder = within(self._root, self._store.trace_path(vehicle, method, mission_id).parent)
-            there = set()
-            with suppress(OSError):
-                there = {entry.name for entry in os.scandir(folder)} if folder else set()
-            self._there[vehicle, method] = there
-        return name in there
-
-
-def _cells(mission_id: str, key: _Key, figures: list[Any] | None, *, has_record: bool) -> list[Any]:
-    """Return the cells of a mission, as `COLUMNS`."""
-    vehicle, method, name = key
-    if figures is None:
-        return [mission_id, method, *[None] * 12, int(has_record), vehicle, name, None, _BROKEN]
-    level, place, goal, success, declared, over_time, compliant, oracle, end, *numbers, seed = figures
-    spl, casr, ct_s, tt_s, steps, path_length_m = numbers
-    fault = None
-    try:
-        cause = cause_among(
-            end,
-            success=bool(success),
-            declared=bool(declared),
-            over_time=bool(over_time),
-            compliant=compliant,
-            oracle_success=bool(oracle),
-        ).value
-    except ValueError:
-        cause, fault = None, _BROKEN
-    said = (outcome_word(success), cause, end, spl, casr, ct_s, tt_s, steps, path_length_m)
-    return [mission_id, method, level, place, goal, *said, int(has_record), vehicle, name, seed, fault]
 
 
 def unpacked(path: Path) -> bytes:

@@ -39,13 +39,14 @@ class Library:
 
     Args:
         root: A run of ``rex bench``, the folder of a mission, or a folder that holds such folders at most `DEPTH` deep.
+        is_awaited: Whether the folder may not be there yet: a mission is about to make it.
 
     Raises:
         RecordError: If there is no such folder.
     """
 
-    def __init__(self, root: Path) -> None:
-        if not is_there(root) or not root.is_dir():
+    def __init__(self, root: Path, *, is_awaited: bool = False) -> None:
+        if (is_there(root) or not is_awaited) and not root.is_dir():
             fault = Fault(f"{root} is no folder", "a folder with runs, as rex run and rex bench leave them")
             raise RecordError("runs", [fault])
         self.root = root.resolve()

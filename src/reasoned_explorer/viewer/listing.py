@@ -63,26 +63,29 @@ class Listing:
     @classmethod
     def of(cls, missions: Iterable[Mapping[str, Any]]) -> "Listing":
         """Return a listing of missions that are given by their columns' names; what is missing becomes null."""
-        return cls.of_cells([mission.get(name) for name in COLUMNS] for mission in missions)
+        missions = list(missions)
+        return cls.of_columns({name: [mission.get(name) for mission in missions] for name in COLUMNS})
 
     @classmethod
-    def of_cells(cls, missions: Iterable[list[Any]]) -> "Listing":
-        """Return a listing of missions that are given as lists of plain cells; the lists are used up."""
+    def of_columns(cls, columns: Mapping[str, Sequence[Any]]) -> "Listing":
+        """Return a listing of missions that are given as whole columns, one for each name in `COLUMNS`."""
         places: dict[str, int] = {}
-        coded = [COLUMNS.index(name) for name in CODED]
-        rounded = [(COLUMNS.index(name), digits) for name, digits in _DIGITS.items()]
-        rows = []
-        for cells in missions:
-            for column in coded:
-                if cells[column] is not None:
-                    cells[column] = places.setdefault(str(cells[column]), len(places))
-            for column, digits in rounded:
-                value = cells[column]
-                if value is not None:
-                    cells[column] = round(value, digits) if math.isfinite(value) else None
-            rows.append(cells)
-        return cls(list(places), rows)
+        made = dict(columns)
+        for name in CODED:
+            kinds = {
+                value: places.setdefault(str(value), len(places))
+                for value in dict.fromkeys(made[name])
+                if value is not None
+            }
+            made[name] = [kinds.get(value) for value in made[name]]
+        for name, digits in _DIGITS.items():
+            made[name] = [None if value is None else _rounded(value, digits) for value in made[name]]
+        return cls(list(places), list(zip(*(made[name] for name in COLUMNS), strict=True)))
 
     def as_json(self, about: Mapping[str, Any]) -> bytes:
         """Return it as the page reads it, with what else there is to say of the run."""
         return to_json({**about, "words": self.words, "columns": COLUMNS, "coded": CODED, "rows": self.rows})
+
+
+def _rounded(value: float, digits: int) -> float | None:
+    return round(value, digits) if math.isfinite(value) else None

@@ -2,6 +2,7 @@
 
 import socket
 import threading
+from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Self
 
@@ -20,9 +21,13 @@ class Server:
         app: An ASGI application.
         host: Address that it listens on.
         port: 0 for any that is free; `port` tells which.
+        before_stop: Called before it ends: lets those go who wait for what never ends.
     """
 
-    def __init__(self, app: Any, *, host: str = "127.0.0.1", port: int = 0) -> None:
+    def __init__(
+        self, app: Any, *, host: str = "127.0.0.1", port: int = 0, before_stop: Callable[[], object] = lambda: None
+    ) -> None:
+        self._before_stop = before_stop
         self._app, self.host, self.port = app, host, port
         self._thread: threading.Thread | None = None
         self._server: Any = None
@@ -46,7 +51,9 @@ class Server:
         self.port = listener.getsockname()[1]
         config = uvicorn.Config(
             self._app,
-            log_level="warning",
+            # What goes wrong in an answer is noted by the guard; what clients send wrong is theirs.
+            log_config=None,
+            log_level="critical",
             access_log=False,
             server_header=False,
             date_header=False,
@@ -62,6 +69,7 @@ class Server:
 
     def stop(self) -> None:
         """End; safe to call twice."""
+        self._before_stop()
         if self._server is not None and self._thread is not None:
             self._server.should_exit = True
             self._thread.join(_START_S)
