@@ -14,7 +14,8 @@ from reasoned_explorer.viewer.security import Guard, within
 from reasoned_explorer.viewer.serving import Server
 from tests.viewer.asking import ask
 
-TOKEN = "a-token-that-is-long-enough"
+TOKEN = "a-token-that-is-long-enough"  # noqa: S105
+EVERYWHERE = "0.0.0.0"  # noqa: S104
 CHANGE = {"Sec-Fetch-Site": "same-origin", "X-Rex-CSRF": "the secret"}
 
 
@@ -207,16 +208,16 @@ def test_the_token_sends_nobody_to_another_server(closed_server: Server) -> None
 def test_beyond_this_machine_a_token_is_demanded() -> None:
     assert Guard.of("127.0.0.1", {}).token is None
     assert Guard.of("localhost", {"REX_VIEW_TOKEN": TOKEN}).token is None
-    drawn = Guard.of("0.0.0.0", {})
+    drawn = Guard.of(EVERYWHERE, {})
     assert drawn.token is not None
     assert len(drawn.token) >= 32
-    assert drawn.token != Guard.of("0.0.0.0", {}).token
+    assert drawn.token != Guard.of(EVERYWHERE, {}).token
     assert Guard.of("192.168.1.5", {"REX_VIEW_TOKEN": TOKEN}).token == TOKEN
     assert TOKEN not in repr(Guard.of("192.168.1.5", {"REX_VIEW_TOKEN": TOKEN}))
 
 
 @pytest.mark.parametrize(
-    ("host", "token"), [("0.0.0.0", "short"), ("0.0.0.0", "ü" * 20), ("a host", TOKEN), ("/", "x")]
+    ("host", "token"), [(EVERYWHERE, "short"), (EVERYWHERE, "ü" * 20), ("a host", TOKEN), ("/", "x")]
 )
 def test_a_bad_address_or_token_is_told(host: str, token: str) -> None:
     with pytest.raises(SettingsError):
@@ -224,7 +225,7 @@ def test_a_bad_address_or_token_is_told(host: str, token: str) -> None:
 
 
 def test_who_listens_everywhere_is_known_by_every_address_but_by_no_foreign_name() -> None:
-    guard = Guard.of("0.0.0.0", {})
+    guard = Guard.of(EVERYWHERE, {})
     for name in ("192.168.1.5:8470", "[fe80::1]:80", "localhost", socket.gethostname()):
         assert guard.knows(name), name
     assert not guard.knows("evil.example")
