@@ -29,7 +29,7 @@ function Sign({ look, range }) {
 /** Q as a scale with its ends. */
 export function Scale({ range: [low, high] }) {
   const stops = [0, 0.2, 0.4, 0.6, 0.8, 1];
-  return html`<span class="scale" role="img" aria-label=${`Colour of Q, from ${low} (dark blue) to ${high} (yellow)`}>
+  return html`<span class="scale" role="img" aria-label=${`Colour of Q, from ${low} (dark violet) to ${high} (yellow)`}>
     <span class="tiny">Q ${low}</span>
     <span class="scale-bar" ref=${(el) => el && (el.style.background = `linear-gradient(90deg, ${stops.map(scale).join(", ")})`)}></span>
     <span class="tiny">${high}</span>

@@ -14,7 +14,7 @@ const COLUMNS = [
   ["goal", "Goal", (row) => html`<span class="clip" title=${row.goal}>${row.goal}</span>`, "c-goal"],
   ["method", "Method", (row) => html`<span class="clip" title=${row.method}>${row.method}</span>`, "c-method"],
   ["place", "Place", (row) => html`<span class="clip" title=${row.place}>${row.place}</span>`, "c-place"],
-  ["cause", "What became of it", (row) => html`<span class="clip" title=${row.cause}>${row.cause}</span>`, "c-cause"],
+  ["cause", "Cause", (row) => html`<span class="clip" title=${row.cause}>${row.cause}</span>`, "c-cause"],
   ["spl", "SPL", (row) => fixed(row.spl), "c-figure num"],
   ["casr", "CASR", (row) => fixed(row.casr), "c-figure num"],
   ["ct_s", "CT s", (row) => fixed(row.ct_s, 0), "c-figure num"],
@@ -27,7 +27,7 @@ const COLUMNS = [
 const kept = new Map();
 const fresh = () => ({ text: "", chosen: {}, sort: "", descending: false, top: 0, active: 0 });
 
-function Filters({ table, state, change, search, shown }) {
+function Filters({ table, state, change, search }) {
   const options = useMemo(
     () => FACETS.filter(([name]) => table.at.has(name)).map(([name, label]) => [name, label, table.counts(table.filtered(state, name), name)]),
     [table, state.text, state.chosen],
@@ -41,7 +41,6 @@ function Filters({ table, state, change, search, shown }) {
       ${counts.map(([value, many]) => html`<option key=${value} value=${value}>${name === "level" && value ? `level ${value}` : value || "(none)"} (${count(many)})</option>`)}
     </select>`)}
     <button type="button" class="quiet" disabled=${!any} onClick=${() => change({ text: "", chosen: {} })}>Clear</button>
-    <output class="count soft small" aria-live="polite">${shown === table.rows.length ? `${count(shown)} missions` : `${count(shown)} of ${count(table.rows.length)}`}</output>
   </form>`;
 }
 
@@ -154,8 +153,9 @@ function Missions({ run, answer }) {
   const sort = (name) => change({ sort: name, descending: state.sort === name ? !state.descending : false });
   const order = (name) => (state.sort !== name ? "none" : state.descending ? "descending" : "ascending");
   return html`<div class="missions">
-    <div class="title"><a class="button quiet back" href="#/?all" aria-label="All runs" title="All runs">←</a><h1 class="clip" title=${answer.name}>${answer.name}</h1><${Rate} rows=${rows} table=${table} /></div>
-    <${Filters} ...${{ table, state, change, search }} shown=${rows.length} />
+    <div class="title"><a class="button quiet back" href="#/?all" aria-label="All runs" title="All runs">←</a><h1 class="clip" title=${answer.name}>${answer.name}</h1><span class="spread"></span><${Rate} rows=${rows} table=${table} />
+      <output class="count small" aria-live="polite">${rows.length === table.rows.length ? `${count(rows.length)} missions` : `${count(rows.length)} of ${count(table.rows.length)} missions`}</output></div>
+    <${Filters} ...${{ table, state, change, search }} />
     <div class="grid card" role="grid" aria-label="Missions of the run" aria-rowcount=${rows.length + 1} aria-colcount=${COLUMNS.length + 1}>
       <div role="rowgroup" class="heads"><div role="row" class="line" aria-rowindex="1">
         ${COLUMNS.map(([name, label, , kind]) => html`<span role="columnheader" aria-sort=${order(name)} class=${kind}><button class="quiet small" onClick=${() => sort(name)}>${label}<span aria-hidden="true">${{ ascending: " ▲", descending: " ▼", none: "" }[order(name)]}</span></button></span>`)}

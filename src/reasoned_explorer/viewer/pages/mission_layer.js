@@ -3,6 +3,7 @@
 import { colour, scoreColour } from "./palette.js";
 
 export const SIGMA_LEVELS = [0.1, 0.5, 0.9];
+const FIGURE_SCALE = 2.2; // pixels per metre from which frontiers have figures
 const FIELD_M = 14; // how far the field of view is drawn
 const TURN = 2 * Math.PI;
 
@@ -37,17 +38,23 @@ export function drawTask(sheet, mission, { marks }) {
     stroke(c, 1.75, colour("--map-reference"), [2, 5]);
   }
   const goal = colour("--map-goal");
-  for (const [, , x, y, grade] of header.goal_objects ?? []) {
-    const radius = header.success_radius_m * sheet.scale;
-    if (!sheet.shows(x, y, radius + 10)) continue;
+  const radius = header.success_radius_m * sheet.scale;
+  const zones = (header.goal_objects ?? []).filter(([, , x, y]) => sheet.shows(x, y, radius + 10));
+  c.beginPath(); // one shape: where zones overlap it is no darker
+  for (const [, , x, y] of zones) {
+    c.moveTo(sheet.px(x) + radius, sheet.py(y));
+    c.arc(sheet.px(x), sheet.py(y), radius, 0, TURN);
+  }
+  c.fillStyle = goal;
+  c.globalAlpha = 0.12;
+  c.fill();
+  c.globalAlpha = 1;
+  for (const [, , x, y, grade] of zones) {
     const [px, py] = [sheet.px(x), sheet.py(y)];
     c.beginPath();
     c.arc(px, py, radius, 0, TURN);
-    c.fillStyle = goal;
-    c.globalAlpha = grade >= 2 ? 0.1 : 0.05;
-    c.fill();
-    c.globalAlpha = grade >= 2 ? 0.9 : 0.5;
-    stroke(c, 1.25, goal, [6, 4]);
+    c.globalAlpha = grade >= 2 ? 0.8 : 0.45;
+    stroke(c, 1, goal, [6, 4]);
     c.globalAlpha = 1;
     star(c, px, py, grade >= 2 ? 8 : 6);
     c.fillStyle = grade >= 2 ? goal : casing;
@@ -70,9 +77,15 @@ export function drawMoment(sheet, mission, moment, { marks, selected = null }) {
   drawTrack(sheet, mission, moment);
   if (marks.graph) drawPoints(sheet, mission, moment);
   if (marks.frontiers) for (const one of frontiers) drawFrontier(sheet, one, mission.qRange);
+  if (marks.sigma && moment.index >= 0) drawSigmaFigures(sheet, mission, moment);
   drawChosen(sheet, frontiers, moment, selected);
   drawRobot(sheet, mission, moment);
 }
+
+const SIDE = 78; // pixels between two figures on a ring
+const SPOTS = [-90, 90, -60, -120, 60, 120, -30, 210, 30, 150, 0, 180].map((deg) => (deg * Math.PI) / 180);
+/** Whether there is room for the figures of the rings: in the map, and not under its buttons. */
+const isClear = ({ size }, x, y) => x > 40 && x < size.x - 60 && y > 52 && y < size.y - 30;
 
 function drawSigma(sheet, mission, { robot }) {
   const { context: c } = sheet;
@@ -90,26 +103,40 @@ function drawSigma(sheet, mission, { robot }) {
     c.fill();
     c.globalAlpha = 1;
   }
-  c.font = "600 11px system-ui, sans-serif";
-  c.textAlign = "center";
-  c.textBaseline = "middle";
-  SIGMA_LEVELS.forEach((level, index) => {
+  for (const level of SIGMA_LEVELS) {
     const distance = mission.sigmaDistance(level);
-    if (distance === null) return;
-    const radius = distance * sheet.scale;
+    if (distance === null) continue;
     c.beginPath();
-    c.arc(px, py, radius, 0, TURN);
+    c.arc(px, py, distance * sheet.scale, 0, TURN);
     c.globalAlpha = 0.75;
     stroke(c, level === 0.5 ? 1.5 : 1, style, level === 0.5 ? [] : [2, 4]);
     c.globalAlpha = 1;
-    const angle = -Math.PI / 2 + (index - 1) * (70 / Math.max(radius, 70)); // side by side, along the ring
-    const [tx, ty] = [px + radius * Math.cos(angle), py + radius * Math.sin(angle)];
-    c.lineWidth = 4;
-    c.strokeStyle = colour("--map-halo");
-    c.fillStyle = style;
+  }
+}
+
+/** The figures of the rings, side by side where there is room for them. */
+function drawSigmaFigures(sheet, mission, { robot }) {
+  const { context: c } = sheet;
+  const rings = SIGMA_LEVELS.map((level) => [level, mission.sigmaDistance(level)]).filter(([, distance]) => distance !== null);
+  const at = (distance, index, spot) => {
+    const radius = distance * sheet.scale;
+    const angle = spot + (index - 1) * (SIDE / Math.max(radius, SIDE));
+    return [sheet.px(robot.x) + radius * Math.cos(angle), sheet.py(robot.y) + radius * Math.sin(angle)];
+  };
+  const spot = SPOTS.find((one) => rings.every(([, distance], index) => isClear(sheet, ...at(distance, index, one))));
+  if (spot === undefined) return;
+  c.font = "600 11px system-ui, sans-serif";
+  c.textAlign = "center";
+  c.textBaseline = "middle";
+  c.lineWidth = 4;
+  c.lineJoin = "round";
+  c.strokeStyle = colour("--map-halo");
+  c.fillStyle = colour("--map-sigma");
+  rings.forEach(([level, distance], index) => {
+    const [x, y] = at(distance, index, spot);
     const text = `σ ${level} · ${Math.round(distance)} m`;
-    c.strokeText(text, tx, ty);
-    c.fillText(text, tx, ty);
+    c.strokeText(text, x, y);
+    c.fillText(text, x, y);
   });
   c.textAlign = "start";
 }
@@ -201,7 +228,18 @@ export function frontierMark(c, x, y, { state, q, forbidden }, range, size) {
 function drawFrontier(sheet, frontier, range) {
   if (!sheet.shows(frontier.x_m, frontier.y_m)) return;
   const size = sheet.scale < 0.7 ? 4 : 6;
-  frontierMark(sheet.context, sheet.px(frontier.x_m), sheet.py(frontier.y_m), frontier, range, size);
+  const [px, py] = [sheet.px(frontier.x_m), sheet.py(frontier.y_m)];
+  frontierMark(sheet.context, px, py, frontier, range, size);
+  if (sheet.scale >= FIGURE_SCALE && frontier.state === "open" && frontier.q !== null) {
+    const { context: c } = sheet;
+    c.font = "600 10px system-ui, sans-serif";
+    c.textBaseline = "middle";
+    c.lineWidth = 3;
+    c.strokeStyle = colour("--map-halo");
+    c.fillStyle = colour("--map-label");
+    c.strokeText(frontier.q.toFixed(1), px + size + 3, py);
+    c.fillText(frontier.q.toFixed(1), px + size + 3, py);
+  }
 }
 
 function drawChosen(sheet, frontiers, moment, selected) {

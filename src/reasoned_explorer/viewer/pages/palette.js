@@ -49,17 +49,17 @@ export function toggleTheme() {
   changed();
 }
 
-// Cividis (Nuñez, Anderton and Renslow 2018), ten of its stops: even in lightness, the same to all eyes.
-const CIVIDIS = [
-  [0, 34, 78], [18, 53, 112], [59, 73, 108], [87, 93, 109], [112, 113, 115],
-  [138, 134, 120], [165, 156, 116], [195, 180, 105], [225, 204, 85], [254, 232, 56],
+// Viridis (van der Walt and Smith 2015), nine of its stops: even in lightness, and the same order to all eyes.
+const VIRIDIS = [
+  [68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141],
+  [39, 173, 129], [92, 200, 99], [170, 220, 50], [253, 231, 37],
 ];
 
 /** Colour of a share from 0 to 1. */
 export function scale(share) {
-  const at = Math.min(1, Math.max(0, share)) * (CIVIDIS.length - 1);
-  const low = Math.min(CIVIDIS.length - 2, Math.floor(at));
-  const mix = CIVIDIS[low].map((part, i) => Math.round(part + (CIVIDIS[low + 1][i] - part) * (at - low)));
+  const at = Math.min(1, Math.max(0, share)) * (VIRIDIS.length - 1);
+  const low = Math.min(VIRIDIS.length - 2, Math.floor(at));
+  const mix = VIRIDIS[low].map((part, i) => Math.round(part + (VIRIDIS[low + 1][i] - part) * (at - low)));
   return `rgb(${mix.join(" ")})`;
 }
 

@@ -5,7 +5,7 @@ export const FACETS = [
   ["level", "Level"],
   ["method", "Method"],
   ["outcome", "Outcome"],
-  ["cause", "What became of it"],
+  ["cause", "Cause"],
   ["place", "Place"],
 ];
 

@@ -69,6 +69,7 @@ export function Timeline({ missions, names = [], player, cursor, version = 0, on
   const canvas = useRef(null);
   const needle = useRef(null);
   const readout = useRef(null);
+  const sums = useRef(null);
   const [, redraw] = useState(0);
   const again = () => redraw((n) => n + 1);
   useEffect(() => player.onState(again), [player]);
@@ -103,6 +104,7 @@ export function Timeline({ missions, names = [], player, cursor, version = 0, on
     needle.current.style.transform = `translateX(${toX(Math.min(t, end))}px)`;
     const words = missions.map((mission) => spent(mission, t));
     readout.current.textContent = `${clock(t)} / ${clock(end)}`;
+    if (sums.current) sums.current.textContent = words[0];
     box.current.setAttribute("aria-valuenow", String(Math.round(t)));
     box.current.setAttribute("aria-valuetext", `${clock(t)}; ${words.join("; ")}`);
   };
@@ -129,6 +131,7 @@ export function Timeline({ missions, names = [], player, cursor, version = 0, on
         ${SPEEDS.map((speed) => html`<option value=${String(speed)}>${speed}×</option>`)}
       </select>
       <output class="time figures" ref=${readout}></output>
+      ${missions.length === 1 ? html`<span class="soft small figures nowrap" ref=${sums} aria-hidden="true"></span>` : null}
       <span class="spread"></span>
       <ul class="time-keys" aria-label="Colours of the time line">
         <li><span class="swatch look"></span>look</li><li><span class="swatch think"></span>think (CT)</li><li><span class="swatch travel"></span>travel</li>

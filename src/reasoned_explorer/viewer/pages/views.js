@@ -18,7 +18,7 @@ function Picture({ src, alt }) {
   }, [src]);
   if (fault) return html`<div class="picture none"><span>no picture</span></div>`;
   return html`<div class="picture ${shown === src ? "" : "waits"}">
-    ${shown === src ? html`<img src=${shown} alt=${alt} width="224" height="224" decoding="async" onError=${() => setFault(true)} onLoad=${(event) => event.target.parentNode.classList.remove("waits")} />` : null}
+    ${shown === src ? html`<img src=${shown} alt=${alt} width="224" height="224" decoding="async" onError=${() => setFault(true)} onLoad=${(event) => event.target.parentNode?.classList.remove("waits")} />` : null}
   </div>`;
 }
 

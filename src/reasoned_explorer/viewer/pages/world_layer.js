@@ -2,7 +2,8 @@
 
 import { colour } from "./palette.js";
 
-const LABEL_SCALE = 3; // pixels per metre from which things have names
+const NAME_SCALE = 2; // pixels per metre from which buildings have names
+const LABEL_SCALE = 5.5; // and things
 const DOT_SCALE = 0.8;
 
 function ring(path, points) {
@@ -28,7 +29,7 @@ export class WorldDrawing {
       if (name && rings[0]?.length) this.names.push({ name, ...centre(rings[0]) });
     }
     this.objects = world.objects ?? [];
-    this.trees = (world.trees ?? []).map((tree) => (Array.isArray(tree) ? { x: tree[0], y: tree[1] } : tree));
+    this.trees = (world.trees ?? []).map((tree) => ({ x: tree[0], y: tree[1], radius: tree[2] ?? 1.8 }));
   }
 
   _rings(rings) {
@@ -58,7 +59,7 @@ export class WorldDrawing {
     for (const tree of this.trees) {
       if (!sheet.shows(tree.x, tree.y)) continue;
       c.beginPath();
-      c.arc(tree.x, tree.y, tree.radius_m ?? 1.8, 0, 2 * Math.PI);
+      c.arc(tree.x, tree.y, tree.radius, 0, 2 * Math.PI);
       c.fill();
     }
     c.globalAlpha = 1;
@@ -69,17 +70,17 @@ export class WorldDrawing {
     c.stroke(this.buildings);
     sheet.inPixels();
     this._objects(sheet);
-    if (sheet.scale >= LABEL_SCALE) this._labels(sheet);
+    if (sheet.scale >= NAME_SCALE) this._labels(sheet);
   }
 
   _objects(sheet) {
     if (sheet.scale < DOT_SCALE) return;
     const { context: c } = sheet;
-    const radius = sheet.scale >= LABEL_SCALE ? 2.5 : 1.5;
+    const radius = sheet.scale >= 3 ? 2.25 : 1.5;
     c.fillStyle = colour("--map-object");
-    c.globalAlpha = sheet.scale >= LABEL_SCALE ? 0.9 : 0.55;
+    c.globalAlpha = sheet.scale >= 3 ? 0.8 : 0.5;
     for (const thing of this.objects) {
-      if (!sheet.shows(thing.x, thing.y) || thing.class === "tree") continue;
+      if (!sheet.shows(thing.x, thing.y)) continue;
       c.fillRect(sheet.px(thing.x) - radius, sheet.py(thing.y) - radius, 2 * radius, 2 * radius);
     }
     c.globalAlpha = 1;
@@ -108,9 +109,8 @@ export class WorldDrawing {
     c.strokeStyle = colour("--map-halo");
     c.fillStyle = colour("--map-label");
     for (const { name, x, y } of this.names) write(name, x, y);
-    for (const thing of this.objects) {
-      if (thing.class !== "tree") write(thing.name || String(thing.class).replaceAll("_", " "), thing.x, thing.y);
-    }
+    if (sheet.scale < LABEL_SCALE) return;
+    for (const thing of this.objects) write(thing.name || String(thing.class).replaceAll("_", " "), thing.x, thing.y);
   }
 
   /** The object nearest to a place, within so many metres, or null. */
