@@ -96,7 +96,7 @@ def test_what_a_benchmark_has_not_is_told_with_what_is_near(bench: tuple[Path, B
 
 
 def test_a_single_mission_has_nothing_to_choose_from(run_mission: Path) -> None:
-    with pytest.raises(RecordError, match="--planner for .* a run of rex bench"):
+    with pytest.raises(RecordError, match=r"--planner for .* a run of rex bench"):
         find_mission(run_mission, Choice(method="random"))
 
 
