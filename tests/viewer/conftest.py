@@ -6,16 +6,16 @@ pytest.importorskip("fastapi", reason="the extra view is not installed")
 pytest.importorskip("uvicorn", reason="the extra view is not installed")
 
 from reasoned_explorer.model.record import EpisodeRecord
-from tests.viewer.page_runs import bench_run, mission_of
+from tests.viewer.small_runs import make_bench, make_record
 
 
 @pytest.fixture(scope="session")
 def bench(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Twelve missions of two planners, with their records; nobody changes it."""
-    return bench_run(tmp_path_factory.mktemp("benches") / "small")
+    """Eight missions of two planners, with their records; nobody changes it."""
+    return make_bench(tmp_path_factory.mktemp("benches") / "small")
 
 
 @pytest.fixture(scope="session")
-def record(tmp_path_factory: pytest.TempPathFactory) -> EpisodeRecord:
-    """A mission of two minutes in plaza:3@200."""
-    return mission_of(tmp_path_factory.mktemp("mission"))
+def record() -> EpisodeRecord:
+    """A mission in plaza:3@200."""
+    return make_record()
