@@ -44,6 +44,9 @@ PARTS = (
     Part("typer", "typer", "the command line"),
     Part("rich", "rich", "progress"),
     Part("pyarrow", "pyarrow", "results as Parquet", "pip install 'reasoned-explorer[parquet]'", core=False),
+    Part("rerun-sdk", "rerun", "missions for Rerun", "pip install 'reasoned-explorer[rerun]'", core=False),
+    Part("foxglove-sdk", "foxglove", "missions for Foxglove", "pip install 'reasoned-explorer[mcap]'", core=False),
+    Part("gpxpy", "gpxpy", "missions as GPX", "pip install 'reasoned-explorer[gpx]'", core=False),
     Part("ray", "ray", "a benchmark on a cluster", "pip install 'reasoned-explorer[ray]'", core=False),
     Part(
         "gymnasium",
