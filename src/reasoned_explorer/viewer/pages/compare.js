@@ -1,7 +1,7 @@
 // Two missions side by side, in step by mission time.
 
 import * as api from "./api.js";
-import { html, isTaken, Outcome, render, Trouble, useEffect, useRef, useState } from "./parts.js";
+import { html, isTaken, Outcome, render, Trouble, useEffect, useMemo, useRef, useState } from "./parts.js";
 import { calmly, Player } from "./player.js";
 import { outcomeOf, stepFrom, timeKey } from "./replay.js";
 import { mapKey, Stage } from "./stage.js";
@@ -75,6 +75,10 @@ function Compare({ sides }) {
     };
   }, []);
 
+  const line = useMemo(
+    () => html`<${Timeline} missions=${sides.map((side) => side.mission)} names=${sides.map((side) => side.mission.header.planner)} player=${player} cursor=${cursor} onStep=${onStep} />`,
+    [sides],
+  );
   const onMap = (index) => (made) => {
     const { mission, source } = sides[index];
     maps.current[index] = made;
@@ -99,7 +103,7 @@ function Compare({ sides }) {
       <h1 class="clip" title=${header.goal}>${header.goal}</h1>${header.level ? html`<span class="chip">level ${header.level}</span>` : null}
       ${same ? null : html`<span class="chip warn">not the same episode: “${sides[1].mission.header.goal}”</span>`}</div>
     ${sides.map((side, index) => html`<${Side} key=${index} letter=${LETTERS[index]} side=${side} moment=${moments[index]} onMap=${onMap(index)} ground=${grounds[index]} />`)}
-    <${Timeline} missions=${sides.map((side) => side.mission)} names=${sides.map((side) => side.mission.header.planner)} player=${player} cursor=${cursor} onStep=${onStep} />
+    ${line}
   </div>`;
 }
 

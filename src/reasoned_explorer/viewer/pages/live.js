@@ -21,7 +21,7 @@ function State({ feed, mission }) {
 
 function Live() {
   const [feed, setFeed] = useState(null);
-  const [version, setVersion] = useState(0); // of the mission: it grows in place
+  const [, setVersion] = useState(0); // of the mission: it grows in place
   const [follow, setFollow] = useState(true);
   const [tab, setTab] = useState(0);
   const [selected, setSelected] = useState(null);
@@ -149,7 +149,7 @@ function Live() {
     <${Title} mission=${mission}><${State} feed=${feed} mission=${mission} /><button aria-pressed=${String(follow)} onClick=${toggle} title="f">Follow</button><//>
     <${Stage} label="Map of the mission" onMap=${onMap} note=${ground.note} attribution=${ground.attribution} />
     <section class="panel" aria-label="What happened in this step"><${Panel} ...${{ mission, moment, source, selected, tab }} onSelect=${select} onTab=${setTab} /></section>
-    <${Timeline} missions=${[mission]} player=${player} cursor=${cursor} version=${version} onStep=${onStep} />
+    <${Timeline} missions=${[mission]} player=${player} cursor=${cursor} onStep=${onStep} />
   </div>`;
 }
 

@@ -2,7 +2,7 @@
 
 import * as api from "./api.js";
 import { Panel, TABS } from "./panel.js";
-import { html, isTaken, Outcome, presses, render, Trouble, useEffect, useRef, useState } from "./parts.js";
+import { html, isTaken, Outcome, presses, render, Trouble, useEffect, useMemo, useRef, useState } from "./parts.js";
 import { calmly, Player, SPEEDS } from "./player.js";
 import { mapKey, Stage } from "./stage.js";
 import { Mission } from "./state.js";
@@ -123,6 +123,8 @@ function Replay({ run, missionId, record, start }) {
     };
   }, []);
 
+  // The time line is drawn once, and not with each step that the panel shows.
+  const line = useMemo(() => html`<${Timeline} missions=${[mission]} player=${player} cursor=${cursor} onStep=${onStep} />`, [mission]);
   const onMap = (made) => {
     map.current = made;
     made.setMission(mission);
@@ -144,7 +146,7 @@ function Replay({ run, missionId, record, start }) {
     <section class="panel" aria-label="What happened in this step">
       <${Panel} ...${{ mission, moment, selected, tab }} source=${{ run, mission: missionId }} onSelect=${select} onTab=${setTab} />
     </section>
-    <${Timeline} missions=${[mission]} player=${player} cursor=${cursor} onStep=${onStep} />
+    ${line}
   </div>`;
 }
 

@@ -62,9 +62,9 @@ function drawAxis(c, end, width, top, x) {
 
 /**
  * @param {{missions: import("./state.js").Mission[], names?: string[], player: import("./player.js").Player,
- *   cursor: {current: ((t: number) => void)|null}, version?: number, onStep: (by: number) => void}} props
+ *   cursor: {current: ((t: number) => void)|null}, onStep: (by: number) => void}} props
  */
-export function Timeline({ missions, names = [], player, cursor, version = 0, onStep }) {
+export function Timeline({ missions, names = [], player, cursor, onStep }) {
   const box = useRef(null);
   const canvas = useRef(null);
   const needle = useRef(null);
