@@ -48,8 +48,8 @@ def people_section(study: Study, judged: Judged) -> Section | None:
     texts = [asked, *(f"Agreement on {name}: {agreement_words(one)}." for name, one in judged.agreements().items())]
     disputed = judged.disputed
     texts.append(
-        f"{len(disputed):,} of the {missions:,} missions are disputed: at least half of their raters say something "
-        "else than the judge."
+        f"Disputed, since at least half of the raters say something else than the judge: {len(disputed):,} of "
+        f"{missions:,} missions."
         if disputed
         else f"In none of the {missions:,} missions do half of the raters say something else than the judge."
     )
