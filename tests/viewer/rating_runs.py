@@ -4,6 +4,7 @@ import shutil
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -32,14 +33,24 @@ class TestClock:
         return NOON + timedelta(seconds=self.looks)
 
 
-def copied(bench: Path, folder: Path, *, markup: bool = False) -> Path:
-    """Return a copy of a run; with markup, in records that have it wherever somebody could have put text."""
+def copied(bench: Path, folder: Path, *, markup: bool = False, elsewhere: bool = False) -> Path:
+    """Return a copy of a run.
+
+    Args:
+        bench: The run.
+        folder: Of the copy.
+        markup: Have its records hold markup wherever somebody could have put text.
+        elsewhere: Have its missions taken place in worlds that nobody has any more.
+    """
     run = Path(shutil.copytree(bench, folder))
-    if markup:
-        for path in (run / TRACES_NAME).rglob("*.z"):
-            record = full_of_markup(parse_record(zlib.decompress(path.read_bytes()), path))
+    for path in (run / TRACES_NAME).rglob("*.z") if markup or elsewhere else ():
+        record = parse_record(zlib.decompress(path.read_bytes()), path)
+        if markup:
+            record = full_of_markup(record)
             assert record.header.goal == MARKUP
-            path.write_bytes(zlib.compress(record_bytes(record)))
+        if elsewhere:
+            record = replace(record, header=replace(record.header, world_digest="0" * 64))
+        path.write_bytes(zlib.compress(record_bytes(record)))
     return run
 
 

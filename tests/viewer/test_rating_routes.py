@@ -241,3 +241,14 @@ def test_markup_is_told_as_text(bench: Path, tmp_path: Path) -> None:
         assert found.headers["content-type"] == "application/json"
         assert found.headers["x-content-type-options"] == "nosniff"
         assert "unsafe-inline" not in found.headers["content-security-policy"]
+
+
+def test_without_its_world_a_mission_is_told_in_the_captioner_s_words(bench: Path, tmp_path: Path) -> None:
+    run = copied(bench, tmp_path / "run", elsewhere=True)
+    with rating(run) as server:
+        item = items(server)[0]
+        found = ask(server, f"/api/rate/items/{item}?rater=Ann").json
+        assert found["pictures"] == []
+        assert found["captions"]
+        assert ask(server, f"/api/rate/items/{item}/map").status == 404
+        assert ask(server, f"/api/rate/items/{item}/pictures/0.png").status == 404

@@ -21,7 +21,7 @@ from reasoned_explorer.model import Fault, InputError, PartError, RecordError
 from reasoned_explorer.model.record import EpisodeRecord
 from reasoned_explorer.viewer.bench_runs import unpacked
 from reasoned_explorer.viewer.rating_order import Rateable, item_ids, order_for
-from reasoned_explorer.viewer.rating_view import blind_map, blind_view, last_captions, outlooks
+from reasoned_explorer.viewer.rating_view import blind_map, blind_view, end_of, last_captions, outlooks
 from reasoned_explorer.viewer.runs import MissionFiles, UnknownIdError
 from reasoned_explorer.viewer.security import within
 from reasoned_explorer.viewer.views import camera_of
@@ -158,7 +158,8 @@ class RatingDesk:
         """
         opened = self._open(item)
         said = self._store.latest_of(rater_name(rater), self._key(item))
-        pictures = self._worlds.may_have(opened.files, opened.record.header)
+        atlas, end = self._worlds.of(opened.files, opened.record.header), end_of(opened.record)
+        pictures = atlas is not None and atlas.world.bounds.contains(end.x_m, end.y_m)
         looks = outlooks(opened.record, camera_of(opened.record.header)) if pictures else []
         return {
             "item": item,

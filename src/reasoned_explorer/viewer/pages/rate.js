@@ -1,6 +1,6 @@
 // The page on which people judge missions: one at a time, blind to the method.
 
-import { html, render, isTaken, Trouble, useCallback, useEffect, useRef, useState } from "./parts.js";
+import { html, render, isTaken, Trouble, useEffect, useRef, useState } from "./parts.js";
 import { isDark, onTheme, toggleTheme } from "./palette.js";
 import { about, drafts, enter, mission as open, picture, save, worldMap } from "./rate_api.js";
 import { ANSWERS, Form, isWhole } from "./rate_form.js";
@@ -34,6 +34,9 @@ function nextOpen(rated, place) {
   const earlier = rated.indexOf(0);
   return earlier < 0 ? rated.length : earlier;
 }
+
+/** Keys that belong to a radio button that has the focus. */
+const isRadioKey = (event) => event.ctrlKey || event.metaKey || event.altKey || event.key === " " || event.key === "Tab" || event.key.startsWith("Arrow");
 
 function Who({ facts, onEnter, fault }) {
   const [name, setName] = useState("");
@@ -86,19 +89,30 @@ function Rating({ facts, start, onLeave }) {
   const [status, setStatus] = useState(QUIET);
   const [saving, setSaving] = useState(false);
   const [fault, setFault] = useState("");
+  // What holds at this moment: keys come faster than the page is drawn, and must not fall on another mission.
+  const now = useRef({ form: EMPTY, ready: null, saving: false });
+  const pressed = useRef(null);
   const commentBox = useRef(null);
   const goal = useRef(null);
   const { rater, items } = progress;
   const item = items[place];
 
-  const go = useCallback((to) => {
-    setPlace(Math.min(items.length, Math.max(0, to)));
+  const fill = (changed) => {
+    now.current.form = changed;
+    setForm(changed);
+  };
+  const go = (to) => {
+    const next = Math.min(items.length, Math.max(0, to));
+    if (next === place) return;
+    now.current.ready = null;
+    setPlace(next);
     setStatus(QUIET);
-  }, [items]);
+  };
 
   useEffect(() => {
     history.replaceState(null, "", place < items.length ? `#${place + 1}` : "#");
     setFault("");
+    now.current.ready = null;
     if (!item) {
       setMission(null);
       return undefined;
@@ -107,7 +121,8 @@ function Rating({ facts, start, onLeave }) {
     open(item, rater).then(
       (found) => {
         if (!here) return;
-        setForm(formOf(drafts.get(drafts.key(rater, item)) ?? found.mine));
+        fill(formOf(drafts.get(drafts.key(rater, item)) ?? found.mine));
+        now.current.ready = item;
         setLooked(ahead(found));
         setMission(found);
         goal.current?.focus({ preventScroll: true });
@@ -118,58 +133,67 @@ function Rating({ facts, start, onLeave }) {
   }, [item]);
 
   const change = (part) => {
-    const changed = { ...form, ...part };
-    setForm(changed);
+    if (now.current.ready !== item) return;
+    const changed = { ...now.current.form, ...part };
+    fill(changed);
     setStatus(QUIET);
     drafts.set(drafts.key(rater, item), changed);
   };
 
   const keep = async () => {
-    if (saving || !mission || mission.item !== item || !isWhole(form)) return;
+    const said = now.current.form;
+    if (now.current.saving || now.current.ready !== item || !isWhole(said)) return;
+    now.current.saving = true;
     setSaving(true);
     setStatus({ words: "Saving …", tone: "" });
     try {
-      await save(item, { rater, ...form });
+      await save(item, { rater, ...said });
     } catch (why) {
       setStatus({ words: `Not saved: ${why.message} What you said stays here; press Enter to try again.`, tone: "bad" });
-      setSaving(false);
       return;
+    } finally {
+      now.current.saving = false;
+      setSaving(false);
     }
+    const rated = progress.rated.map((one, at) => (at === place ? 1 : one));
+    setProgress((before) => ({ ...before, rated: before.rated.map((one, at) => (at === place ? 1 : one)) }));
+    const here = now.current.ready === item;
+    // What was said while it was on its way is not sent yet: it stays.
+    if (here && now.current.form !== said) return;
     drafts.set(drafts.key(rater, item), null);
-    const rated = progress.rated.with(place, 1);
-    setProgress({ ...progress, rated });
-    setSaving(false);
+    if (!here) return;
     go(nextOpen(rated, place));
     setStatus({ words: `Mission ${place + 1} is saved.`, tone: "good" });
   };
 
   const turn = (by) => mission?.pictures.length && setLooked((at) => (at + by + mission.pictures.length) % mission.pictures.length);
 
+  pressed.current = (event) => {
+    const target = event.target instanceof Element ? event.target : document.body;
+    const writes = target.closest("textarea, input[type=text]");
+    if (writes && event.key === "Escape") target.blur();
+    if (writes && event.key === "Enter" && (event.ctrlKey || event.metaKey)) return keep();
+    if (target.matches("input[type=radio]") ? isRadioKey(event) : isTaken(event)) return undefined;
+    const answer = ANSWERS.find(([, , key]) => key === event.key.toLowerCase());
+    if (answer) change({ answer: answer[0] });
+    else if (/^[1-5]$/.test(event.key)) change({ how_well: Number(event.key) });
+    else if (event.key === "Enter") {
+      if (target.closest("button:not([type=submit]), a")) return undefined;
+      keep();
+    } else if (event.key === "ArrowLeft") turn(-1);
+    else if (event.key === "ArrowRight") turn(1);
+    else if (event.key === "PageUp") go(place - 1);
+    else if (event.key === "PageDown") go(place + 1);
+    else if (event.key === "c") commentBox.current?.focus();
+    else return undefined;
+    event.preventDefault();
+    return undefined;
+  };
   useEffect(() => {
-    const press = (event) => {
-      const writes = event.target instanceof Element && event.target.closest("textarea, input[type=text]");
-      if (writes && event.key === "Escape") event.target.blur();
-      if (writes && event.key === "Enter" && (event.ctrlKey || event.metaKey)) return keep();
-      const radio = event.target instanceof HTMLInputElement && event.target.type === "radio";
-      if (radio ? event.ctrlKey || event.metaKey || event.altKey || event.key.startsWith("Arrow") || event.key === " " : isTaken(event)) return undefined;
-      const answer = ANSWERS.find(([, , key]) => key === event.key.toLowerCase());
-      if (answer && mission) change({ answer: answer[0] });
-      else if (/^[1-5]$/.test(event.key) && mission) change({ how_well: Number(event.key) });
-      else if (event.key === "Enter") {
-        if (event.target instanceof Element && event.target.closest("button, a") && !event.target.closest("[type=submit]")) return undefined;
-        keep();
-      } else if (event.key === "ArrowLeft") turn(-1);
-      else if (event.key === "ArrowRight") turn(1);
-      else if (event.key === "PageUp") go(place - 1);
-      else if (event.key === "PageDown") go(place + 1);
-      else if (event.key === "c") commentBox.current?.focus();
-      else return undefined;
-      event.preventDefault();
-      return undefined;
-    };
+    const press = (event) => pressed.current(event);
     addEventListener("keydown", press);
     return () => removeEventListener("keydown", press);
-  });
+  }, []);
 
   const ahead1 = () => {
     const next = items[nextOpen(progress.rated, place)];
