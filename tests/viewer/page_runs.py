@@ -27,7 +27,9 @@ CHROMIUM = Path("/usr/bin/chromium")
 
 def bench_run(folder: Path) -> Path:
     """Four missions of a minute and a half for each of two planners, with their records."""
-    split = make_split("small", places_of_worlds(["park:5@300", "plaza:5@300"]), share=Share(), dealing=Dealing(3, time_limit_s=90.0))
+    split = make_split(
+        "small", places_of_worlds(["park:5@300", "plaza:5@300"]), share=Share(), dealing=Dealing(3, time_limit_s=90.0)
+    )
     split = replace(split, episodes=split.episodes[:2] + split.episodes[-2:])
     plan = BenchPlan(split, ("llm-rrt", "nearest-frontier"), base=SHORT)
     with RunStore.create(folder, plan, {}) as store:
@@ -63,7 +65,8 @@ def full_of_markup(record: EpisodeRecord) -> EpisodeRecord:
             step,
             notes=(MARKUP,),
             views=tuple(
-                replace(view, caption=MARKUP, evidence=MARKUP, plan_fault=MARKUP, check_fault=MARKUP) for view in step.views
+                replace(view, caption=MARKUP, evidence=MARKUP, plan_fault=MARKUP, check_fault=MARKUP)
+                for view in step.views
             ),
             tree=tuple(replace(node, text=MARKUP) for node in step.tree),
             frontiers=tuple(replace(each, state="given up", reason=MARKUP) for each in step.frontiers),
@@ -71,7 +74,9 @@ def full_of_markup(record: EpisodeRecord) -> EpisodeRecord:
         for step in record.steps
     )
     goals = tuple((number, MARKUP, x, y, grade) for number, _, x, y, grade in record.header.goal_objects)
-    header = replace(record.header, goal=MARKUP, planner=MARKUP, attribution=MARKUP, notes=(MARKUP,), goal_objects=goals)
+    header = replace(
+        record.header, goal=MARKUP, planner=MARKUP, attribution=MARKUP, notes=(MARKUP,), goal_objects=goals
+    )
     summary = None if record.summary is None else replace(record.summary, judge=MARKUP, reason=MARKUP)
     return EpisodeRecord(header, steps, summary)
 

@@ -101,7 +101,9 @@ def test_a_list_is_filtered_counted_and_sorted(tab: Open) -> None:
     page.click(".heads button:has-text('Path')")
     paths = [float(text.split()[0]) for text in page.locator(".rows .line .c-path").all_inner_texts()]
     assert len(paths) == 8
-    order = page.evaluate("[...document.querySelectorAll('.rows .line')].map(l => Number(l.getAttribute('aria-rowindex')))")
+    order = page.evaluate(
+        "[...document.querySelectorAll('.rows .line')].map(l => Number(l.getAttribute('aria-rowindex')))"
+    )
     assert [path for _, path in sorted(zip(order, paths, strict=True))] == sorted(paths)
 
 
@@ -159,7 +161,11 @@ def test_the_time_line_is_dragged_through(tab: Open) -> None:
 def test_the_views_of_a_step_have_pictures_and_words(tab: Open) -> None:
     each = tab()
     page = _open_replay(each)
-    each.wait("[...document.querySelectorAll('.view img')].filter(i => i.complete && i.naturalWidth).length === 3", "pictures", 90)
+    each.wait(
+        "[...document.querySelectorAll('.view img')].filter(i => i.complete && i.naturalWidth).length === 3",
+        "pictures",
+        90,
+    )
     assert page.locator(".view .caption").count() == 3
     assert all(page.locator(".view .caption").all_inner_texts())
     assert "Q" in _text(page, ".step-words")
@@ -249,7 +255,9 @@ def test_everything_is_reached_by_keyboard_alone(tab: Open) -> None:
 def test_markup_is_shown_as_the_text_that_it_is(tab: Open) -> None:
     each = tab()
     page = each.open()
-    page.click("a.run:has-text('one mission')") if page.locator("a.run:has-text('one mission')").count() else page.click("a.run:not(:has-text('bench'))")
+    page.click("a.run:has-text('one mission')") if page.locator(
+        "a.run:has-text('one mission')"
+    ).count() else page.click("a.run:not(:has-text('bench'))")
     page.wait_for_selector(".rows .line")
     assert _text(page, ".rows .line .c-goal") == MARKUP
     page.click(".rows .line")
@@ -289,15 +297,29 @@ def test_light_and_dark_follow_the_system_until_somebody_chooses(tab: Open) -> N
 
 
 @pytest.mark.parametrize(("width", "height"), [(1280, 720), (1024, 768), (820, 1180)])
+def test_two_maps_stand_side_by_side(tab: Open, width: int, height: int) -> None:
+    page = _open_bench(tab(width, height))
+    page.click(".rows .line >> nth=0 >> button[aria-label=Compare]")
+    page.click("dialog.peers a >> nth=0")
+    page.wait_for_selector(".side >> nth=1")
+    first, second = (page.locator(".side .stage").nth(place).bounding_box() for place in range(2))
+    assert first["x"] + first["width"] <= second["x"]
+    assert second["x"] + second["width"] <= width
+    assert page.locator(".strip").bounding_box()["y"] < height
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 720), (1024, 768), (820, 1180)])
 def test_nothing_is_wider_or_higher_than_the_screen(tab: Open, width: int, height: int) -> None:
     each = tab(width, height, has_touch=width < 1280)
     page = _open_replay(each)
     beyond = "[document.documentElement.scrollWidth - innerWidth, document.documentElement.scrollHeight - innerHeight]"
     assert page.evaluate(beyond) == [0, 0]
-    inner = "[...document.querySelectorAll('.replay > *')].every(e => e.getBoundingClientRect().right <= innerWidth + 1)"
+    inner = (
+        "[...document.querySelectorAll('.replay > *')].every(e => e.getBoundingClientRect().right <= innerWidth + 1)"
+    )
     assert page.evaluate(inner)
     assert page.locator(".strip").bounding_box()["y"] < height
-    page.go_back()
+    page.click("a.back")
     page.wait_for_selector(".rows .line")
     assert page.evaluate(beyond) == [0, 0]
 
@@ -309,7 +331,9 @@ def test_a_touch_opens_a_mission_and_moves_the_time(tab: Open) -> None:
     page.wait_for_selector(".strip")
     box = page.locator(".strip").bounding_box()
     page.touchscreen.tap(box["x"] + box["width"] / 2, box["y"] + 10)
-    each.wait("Number(document.querySelector('.strip').getAttribute('aria-valuenow')) > 20", "the middle of the mission")
+    each.wait(
+        "Number(document.querySelector('.strip').getAttribute('aria-valuenow')) > 20", "the middle of the mission"
+    )
 
 
 def test_what_is_not_there_is_said_in_one_sentence(tab: Open, url: str) -> None:

@@ -31,7 +31,9 @@ class LiveSite:
 
     def _make(self, port: int) -> Server:
         self.feed = LiveFeed(self.folder / "now" / "record.jsonl")
-        return Server(guarded(create_app(Library(self.folder), guard=self.guard, live=self.feed), self.guard), port=port)
+        return Server(
+            guarded(create_app(Library(self.folder), guard=self.guard, live=self.feed), self.guard), port=port
+        )
 
     def stop(self) -> None:
         self.feed.close()

@@ -67,7 +67,8 @@ export const run = (name) => once(paths.run(name));
 export const mission = (name, one) => get(paths.mission(name, one));
 
 /** The map of a mission's world, or null with the reason where there is none. */
-export async function worldMap(name, one) {
+export async function worldMap(name, one, header) {
+  if (!header.world_digest) return { world: null, why: "no world is known, as outdoors." };
   try {
     return { world: await once(paths.map(name, one)), why: "" };
   } catch (fault) {

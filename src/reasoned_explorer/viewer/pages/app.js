@@ -1,7 +1,6 @@
 // The page's frame and its views, chosen by what stands behind the # of its address.
 
 import * as api from "./api.js";
-import { openHelp } from "./help.js";
 import { html, isTaken, render, Trouble } from "./parts.js";
 import { isDark, onTheme, toggleTheme } from "./palette.js";
 
@@ -10,6 +9,8 @@ const bar = document.getElementById("bar");
 let leave = null;
 let about = null;
 let turn = 0;
+
+const openHelp = () => import("./help.js").then((help) => help.openHelp());
 
 /** Each view loads what it needs when it is first opened: the list needs no map. */
 const VIEWS = {

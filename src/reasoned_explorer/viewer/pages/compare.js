@@ -41,7 +41,7 @@ function Compare({ sides }) {
   const [moments, setMoments] = useState(now.current);
   const [grounds, setGrounds] = useState([{}, {}]);
   const tell = useRef(null);
-  tell.current ??= calmly(() => setMoments(now.current), 150);
+  tell.current ??= calmly(() => setMoments(now.current));
   const [player] = useState(
     () =>
       new Player((t) => {
@@ -90,7 +90,7 @@ function Compare({ sides }) {
     made.fit = () => own(whole);
     made.fit();
     if (maps.current[0] && maps.current[1]) unfollow.current = maps.current[0].follow(maps.current[1]);
-    api.worldMap(source.run, source.mission).then(({ world, why }) => {
+    api.worldMap(source.run, source.mission, mission.header).then(({ world, why }) => {
       if (maps.current[index] !== made) return;
       made.setWorld(world);
       setGrounds((known) => known.map((one, i) => (i === index ? { note: world ? "" : `No ground is shown: ${why}`, attribution: world?.attribution ?? "" } : one)));

@@ -69,6 +69,7 @@ function Rows({ table, rows, run, state, keep, compare }) {
     const resized = new ResizeObserver(() => box.current && setHeight(box.current.clientHeight));
     resized.observe(box.current);
     box.current.scrollTop = state.top;
+    requestAnimationFrame(() => performance.mark("rows-shown")); // for whoever measures the page
     return () => resized.disconnect();
   }, []);
   useLayoutEffect(() => {

@@ -62,7 +62,7 @@ function Live() {
     map.fit();
     if (!from || ready.current) return;
     ready.current = true;
-    api.worldMap(from.run, from.mission).then(({ world, why }) => {
+    api.worldMap(from.run, from.mission, mission.header).then(({ world, why }) => {
       at.current.map?.setWorld(world);
       setGround({ note: world ? "" : `No ground is shown: ${why}`, attribution: world?.attribution ?? "" });
     });

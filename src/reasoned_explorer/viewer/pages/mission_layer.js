@@ -1,8 +1,9 @@
 // A mission at one moment, over the map: the only thing that is drawn again while time goes on.
 
-import { colour, scoreColour } from "./palette.js";
+import { colour, onTheme, scoreColour } from "./palette.js";
 
 export const SIGMA_LEVELS = [0.1, 0.5, 0.9];
+const SPRITE = { width: 40, height: 22, x: 11, y: 11 };
 const FIGURE_SCALE = 2.2; // pixels per metre from which frontiers have figures
 const FIELD_M = 14; // how far the field of view is drawn
 const TURN = 2 * Math.PI;
@@ -183,14 +184,17 @@ function drawTrack(sheet, mission, moment) {
 function drawPoints(sheet, mission, moment) {
   const { context: c } = sheet;
   const radius = sheet.scale < 0.7 ? 1.5 : 2.75;
-  c.fillStyle = colour("--map-casing");
+  c.beginPath();
   for (const point of mission.points) {
     if (point.step > moment.index) break;
-    c.beginPath();
-    c.arc(sheet.px(point.x), sheet.py(point.y), radius, 0, TURN);
-    c.fill();
-    stroke(c, 1.25, colour("--map-track"));
+    if (!sheet.shows(point.x, point.y)) continue;
+    const [x, y] = [sheet.px(point.x), sheet.py(point.y)];
+    c.moveTo(x + radius, y);
+    c.arc(x, y, radius, 0, TURN);
   }
+  c.fillStyle = colour("--map-casing");
+  c.fill();
+  stroke(c, 1.25, colour("--map-track"));
 }
 
 /** Shape tells the state, colour the score: open ● filled, visited ○, given up ✕, blocked ▬ across. */
@@ -225,21 +229,39 @@ export function frontierMark(c, x, y, { state, q, forbidden }, range, size) {
   }
 }
 
-function drawFrontier(sheet, frontier, range) {
-  if (!sheet.shows(frontier.x_m, frontier.y_m)) return;
-  const size = sheet.scale < 0.7 ? 4 : 6;
-  const [px, py] = [sheet.px(frontier.x_m), sheet.py(frontier.y_m)];
-  frontierMark(sheet.context, px, py, frontier, range, size);
-  if (sheet.scale >= FIGURE_SCALE && frontier.state === "open" && frontier.q !== null) {
-    const { context: c } = sheet;
+const sprites = new Map();
+onTheme(() => sprites.clear());
+
+/** A frontier's mark with its figure, drawn once and then copied: there may be thousands in a picture. */
+function sprite(frontier, range, size, figure, ratio) {
+  const q = frontier.q === null ? null : Math.round(frontier.q * 10) / 10;
+  const key = `${frontier.state} ${q} ${frontier.forbidden} ${size} ${figure} ${ratio} ${range}`;
+  let made = sprites.get(key);
+  if (made) return made;
+  made = document.createElement("canvas");
+  made.width = SPRITE.width * ratio;
+  made.height = SPRITE.height * ratio;
+  const c = made.getContext("2d");
+  c.scale(ratio, ratio);
+  frontierMark(c, SPRITE.x, SPRITE.y, { ...frontier, q }, range, size);
+  if (figure && frontier.state === "open" && q !== null) {
     c.font = "600 10px system-ui, sans-serif";
     c.textBaseline = "middle";
     c.lineWidth = 3;
     c.strokeStyle = colour("--map-halo");
     c.fillStyle = colour("--map-label");
-    c.strokeText(frontier.q.toFixed(1), px + size + 3, py);
-    c.fillText(frontier.q.toFixed(1), px + size + 3, py);
+    c.strokeText(q.toFixed(1), SPRITE.x + size + 3, SPRITE.y);
+    c.fillText(q.toFixed(1), SPRITE.x + size + 3, SPRITE.y);
   }
+  sprites.set(key, made);
+  return made;
+}
+
+function drawFrontier(sheet, frontier, range) {
+  if (!sheet.shows(frontier.x_m, frontier.y_m)) return;
+  const size = sheet.scale < 0.7 ? 4 : 6;
+  const mark = sprite(frontier, range, size, sheet.scale >= FIGURE_SCALE, sheet.ratio);
+  sheet.context.drawImage(mark, Math.round(sheet.px(frontier.x_m)) - SPRITE.x, Math.round(sheet.py(frontier.y_m)) - SPRITE.y, SPRITE.width, SPRITE.height);
 }
 
 function drawChosen(sheet, frontiers, moment, selected) {
@@ -283,7 +305,7 @@ function drawRobot(sheet, mission, { robot, step, phase }) {
     stroke(c, 1, style);
     c.globalAlpha = 1;
   };
-  if (phase === "travel" || !views.length) field(robot.h, single, 0.16);
+  if (phase === "travel" || phase === "over" || !views.length) field(robot.h, single, 0.16);
   else for (const view of views) field(view.heading_rad, single * 0.94, 0.13);
   c.save();
   c.translate(px, py);

@@ -5,6 +5,7 @@ import { Tree } from "./tree.js";
 import { Score, Views } from "./views.js";
 import { checked, choice, clock, degrees, ending, fixed, metres, travel } from "./words.js";
 
+const PHASES = { look: "looking", think: "thinking", travel: "travelling", over: "over" };
 export const TABS = ["Imagined", "Frontiers", "Mission"];
 
 /** What was decided in a step, and what came in between. */
@@ -92,7 +93,7 @@ export function Panel({ mission, moment, source, selected, onSelect, tab, onTab,
   const waits = !moment.decided;
   return html`<div class="panel-inside">
     <div class="step-head row"><h2>Step ${moment.index + 1}<span class="soft"> of ${mission.steps.length}</span></h2>
-      <span class="chip phase ${moment.phase}">${moment.phase === "look" ? "looking" : moment.phase === "think" ? "thinking" : "travelling"}</span>
+      <span class="chip phase ${moment.phase}">${PHASES[moment.phase]}</span>
       <span class="spread"></span><span class="soft small figures">look ${fixed(moment.step.look_s, 1)} · think ${fixed(moment.step.think_s, 1)} · travel ${fixed(moment.step.travel_s, 1)} s</span></div>
     <div class=${waits ? "undecided" : ""}><${StepWords} mission=${mission} moment=${moment} /></div>
     <${Views} step=${moment.step} source=${source} range=${mission.qRange} selected=${selected} onSelect=${onSelect} pictures=${pictures} />

@@ -70,7 +70,7 @@ export class Player {
 }
 
 /** Keep what is costly to a few times a second; the last call is always done. */
-export function calmly(work, every = 120) {
+export function calmly(work, every = 200) {
   let timer = 0;
   let last = 0;
   const run = (now) => {

@@ -130,7 +130,7 @@ function Replay({ run, missionId, record, start }) {
     made.setMission(mission);
     made.fit();
     made.show(now.current);
-    api.worldMap(run, missionId).then(({ world, why }) => {
+    api.worldMap(run, missionId, mission.header).then(({ world, why }) => {
       if (map.current !== made) return;
       made.setWorld(world);
       setGround({ note: world ? "" : `No ground is shown: ${why}`, attribution: world?.attribution ?? "" });

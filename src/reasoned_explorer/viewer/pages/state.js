@@ -98,7 +98,8 @@ export class Mission {
       const share = Math.min(1, (t - here.t) / (next.t - here.t));
       robot = { x: here.x + (next.x - here.x) * share, y: here.y + (next.y - here.y) * share, h: between(here.h, next.h, share) };
     }
-    let phase = "travel";
+    let phase = step?.legs.length ? "travel" : "think";
+    if (this.summary && t >= this.end - 1e-6) phase = "over";
     if (step && !decided) phase = t < step.started_s + step.look_s ? "look" : "think";
     return { t, index, step, decided, known, trackEnd: last, robot, phase, chosen: decided ? (step.choice?.frontier ?? null) : null };
   }

@@ -70,19 +70,25 @@ export function Timeline({ missions, names = [], player, cursor, onStep }) {
   const needle = useRef(null);
   const readout = useRef(null);
   const sums = useRef(null);
+  const wide = useRef(0);
+  const left = useRef(0);
   const [, redraw] = useState(0);
   const again = () => redraw((n) => n + 1);
   useEffect(() => player.onState(again), [player]);
   useEffect(() => onTheme(again), []);
   useEffect(() => {
-    const resized = new ResizeObserver(again);
+    const resized = new ResizeObserver(([{ contentRect }]) => {
+      wide.current = contentRect.width; // asked for once: a question while time moves would lay the whole page out
+      again();
+    });
     resized.observe(box.current);
+    wide.current = box.current.clientWidth;
     return () => resized.disconnect();
   }, []);
 
   const height = missions.length * (LANE + GAP) + AXIS;
   const end = Math.max(1, ...missions.map((mission) => mission.end));
-  const width = () => box.current.clientWidth;
+  const width = () => wide.current || box.current.clientWidth;
   const toX = (t) => PAD + (t / end) * (width() - 2 * PAD);
 
   useLayoutEffect(() => {
@@ -110,12 +116,12 @@ export function Timeline({ missions, names = [], player, cursor, onStep }) {
   };
 
   const drag = (event) => {
-    const left = box.current.getBoundingClientRect().left;
     player.toggle(false);
-    player.seek(((event.clientX - left - PAD) / Math.max(1, width() - 2 * PAD)) * end);
+    player.seek(((event.clientX - left.current - PAD) / Math.max(1, width() - 2 * PAD)) * end);
   };
   const down = (event) => {
     if (event.button) return;
+    left.current = box.current.getBoundingClientRect().left;
     box.current.setPointerCapture(event.pointerId);
     drag(event);
   };

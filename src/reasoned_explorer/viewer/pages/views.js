@@ -22,8 +22,9 @@ function Picture({ src, alt }) {
   </div>`;
 }
 
-function Flags({ view }) {
+function Flags({ view, chosen }) {
   return html`
+    ${chosen ? html`<span class="chip accent"><span aria-hidden="true">○</span>chosen</span>` : null}
     ${view.found ? html`<span class="chip good"><span aria-hidden="true">★</span>goal seen ${fixed(view.confidence)}</span>` : null}
     ${view.blocked ? html`<span class="chip bad"><span aria-hidden="true">▬</span>blocked</span>` : null}
     ${view.forbidden ? html`<span class="chip warn"><span aria-hidden="true">△</span>shunned ground</span>` : null}`;
@@ -43,12 +44,12 @@ function View({ view, step, index, source, range, chosen, selected, onSelect, pi
   return html`<li class="view card${is}${selected ? " selected" : ""}">
     <button class="view-head" aria-pressed=${selected ? "true" : "false"} onClick=${() => onSelect(selected ? null : view.frontier)} disabled=${view.frontier === null}
       title=${view.frontier === null ? "no frontier here" : `ring frontier ${view.frontier} on the map`}>
-      <b>${where}</b>${chosen ? html`<span class="chip accent">chosen</span>` : null}<span class="spread"></span>
+      <b>${where}</b><span class="spread"></span>
       <span class="unseen">Q</span><${Score} q=${view.q} range=${range} />
     </button>
     ${pictures === "none" || !source ? null : html`<${Picture} key=${index} src=${paths.view(source.run, source.mission, step.step, index, 320)} alt=${`View ${where}: ${caption}`} />`}
     <div class="view-text">
-      <div class="flags"><${Flags} view=${view} /></div>
+      <div class="flags"><${Flags} view=${view} chosen=${chosen} /></div>
       <p class="caption" title=${caption}>${caption}</p>
       ${view.evidence ? html`<p class="tiny evidence"><b>Evidence</b> ${view.evidence}</p>` : null}
       ${faults.map((words) => html`<p class="tiny fault">${words}</p>`)}

@@ -59,7 +59,7 @@ export function checked(step) {
   if (!step.views.length) return "";
   const seen = step.views.filter((view) => view.found);
   if (seen.length) {
-    return seen.map((view) => `Goal seen in view ${step.views.indexOf(view) + 1} (${fixed(view.confidence)}): ${view.evidence}`).join(" ");
+    return seen.map((view) => `Goal seen in view ${step.views.indexOf(view) + 1} (${fixed(view.confidence)}): ${view.evidence}`).join(" · ");
   }
   const faults = step.views.filter((view) => view.check_fault);
   if (faults.length === step.views.length) return `No answer: ${faults[0].check_fault}`;

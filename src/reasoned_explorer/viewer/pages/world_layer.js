@@ -4,6 +4,7 @@ import { colour } from "./palette.js";
 
 const NAME_SCALE = 2; // pixels per metre from which buildings have names
 const LABEL_SCALE = 5.5; // and things
+const LONGEST = 34; // letters of a name
 const DOT_SCALE = 0.8;
 
 function ring(path, points) {
@@ -90,7 +91,8 @@ export class WorldDrawing {
   _labels(sheet) {
     const { context: c } = sheet;
     const taken = new Set();
-    const write = (text, x, y) => {
+    const write = (whole, x, y) => {
+      const text = whole.length > LONGEST ? `${whole.slice(0, LONGEST - 1)}…` : whole;
       if (!sheet.shows(x, y, 0)) return;
       const px = sheet.px(x);
       const py = sheet.py(y);
