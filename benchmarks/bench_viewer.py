@@ -179,7 +179,7 @@ def _measure(page: Any, url: str, runs: int) -> None:
     count = page.inner_text("output.count")
     first, rest = times[0], median(times[1:] or times)
     print(
-        f"{count}: first opening {first:.2f} s, then {rest:.2f} s (median of {max(1, runs - 1)}); target {OPENING_S:g} s"
+        f"{count}: first opening {first:.2f} s, then {rest:.2f} s (median); target {OPENING_S:g} s"
     )
     print(f"filter as one types: {1000.0 * median(filter_s(page) for _ in range(5)):.0f} ms")
     page.goto("about:blank")

@@ -247,7 +247,7 @@ def test_everything_is_reached_by_keyboard_alone(tab: Open) -> None:
     page.keyboard.press("ArrowRight")
     each.wait("Number(document.querySelector('.strip').getAttribute('aria-valuenow')) > 0", "a step on")
     page.keyboard.press("?")
-    assert page.locator("dialog.help[open]").count() == 1
+    page.wait_for_selector("dialog.help[open]")
     page.keyboard.press("Escape")
     assert page.locator("dialog[open]").count() == 0
 

@@ -99,6 +99,8 @@ def test_silence_is_told_and_what_was_missed_comes_later(site: LiveSite, tab: Ta
         file.header(record.header)
         file.step(record.steps[0])
         _at(tab, "Step 1 of 1")
+        drawn = "[...document.querySelectorAll('.view img')].filter(i => i.complete).length === 3"
+        tab.wait(drawn, "the pictures, so that the server is not stopped while it draws them", 90.0)
         asked: list[str] = []
         page.on("request", lambda request: asked.append(request.url.removeprefix(site.url)))
         site.stop()
