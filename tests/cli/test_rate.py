@@ -21,6 +21,7 @@ from reasoned_explorer.cli.app import app
 from reasoned_explorer.evaluation.bench.store import RunStore
 from reasoned_explorer.evaluation.ratings import ratings_of
 from tests.viewer.page_runs import bench_run
+from tests.viewer.rating_runs import copied, without_records
 
 
 @pytest.fixture(scope="module")
@@ -96,11 +97,9 @@ def test_what_is_no_run_is_refused(tmp_path: Path) -> None:
     assert "holds no run.sqlite" in answered.output
 
 
-def test_nothing_to_rate_is_said(run: Path) -> None:
-    with RunStore.read(run) as store:
-        missing = sorted({1, 2, 3, 4} - {row.level for row in store.rows()})
-    if not missing:
-        pytest.skip("the run has missions of all levels")
-    answered = CliRunner().invoke(app, ["rate", str(run), "--levels", f"{missing[0]}"])
+def test_nothing_to_rate_is_said(run: Path, tmp_path: Path) -> None:
+    bare = copied(run, tmp_path / "bare")
+    without_records(bare, "llm-rrt")
+    answered = CliRunner().invoke(app, ["rate", str(bare), "--methods", "llm-rrt"])
     assert answered.exit_code == 2
-    assert "no mission is chosen" in answered.output
+    assert "missions has a record" in answered.output

@@ -38,7 +38,8 @@ class RateOptions:
         with RunStore.read(run) as store:
             known = store.plan.methods
         methods = tuple(parse_planners(self.methods))
-        levels = found.take(lambda: parse_levels(self.levels), ())
+        none: tuple[int, ...] = ()
+        levels = found.take(lambda: parse_levels(self.levels), none)
         faults = [Fault(name, f"one of {', '.join(known)}") for name in methods if name not in known]
         if faults:
             found.add(SettingsError("--methods", faults))
