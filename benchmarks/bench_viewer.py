@@ -69,7 +69,7 @@ def make_list(folder: Path, count: int) -> None:
     split = make_split("many", places, share=Share(), dealing=Dealing(3, time_limit_s=60.0))
     settings = MissionSettings(explorer=ExplorerSettings(t_max_s=60.0))
     plan = BenchPlan(replace(split, episodes=split.episodes[:4]), ("nearest-frontier", "random"), base=settings)
-    rows = [(task, MissionRow.from_json(run_task(plan, task).row)) for task in plan.tasks()]
+    rows = [(task, MissionRow.from_json(str(run_task(plan, task).row))) for task in plan.tasks()]
     with RunStore.create(folder, plan, {}) as store:
         for number in range(count):
             task, row = rows[number % len(rows)]
@@ -178,9 +178,7 @@ def _measure(page: Any, url: str, runs: int) -> None:
     times = [opening_s(page, url + listed) for _ in range(runs)]
     count = page.inner_text("output.count")
     first, rest = times[0], median(times[1:] or times)
-    print(
-        f"{count}: first opening {first:.2f} s, then {rest:.2f} s (median); target {OPENING_S:g} s"
-    )
+    print(f"{count}: first opening {first:.2f} s, then {rest:.2f} s (median); target {OPENING_S:g} s")
     print(f"filter as one types: {1000.0 * median(filter_s(page) for _ in range(5)):.0f} ms")
     page.goto("about:blank")
     page.goto(url + alone)

@@ -130,7 +130,7 @@ export function Tree({ step, range }) {
     moves[event.key]();
   };
   return html`<div>
-    <div class="row tree-tools"><span class="soft tiny spread">${step.tree.length} imagined scenes; score and levels 1–5 by the evaluator</span>
+    <div class="row tree-tools"><span class="soft tiny spread">${step.tree.length} imagined scenes, scored from 1 to 5</span>
       <button class="quiet small" onClick=${() => all(true)}>Unfold all</button><button class="quiet small" onClick=${() => all(false)}>Fold</button></div>
     <ul class="tree" role="tree" aria-label="Imagined scenes" ref=${box} onKeyDown=${keys}>
       ${roots.map((place) => html`<${Branch} key=${place.id} ...${{ place, depth: 1, step, range, open, active, toggle, focus: setActive }} />`)}
