@@ -18,12 +18,17 @@ MISSIONS = 8
 SHORT = MissionSettings(explorer=ExplorerSettings(t_max_s=90.0))
 
 
-def make_bench(folder: Path) -> Path:
-    """Four missions of a minute and a half for each of two planners, in two places, with their records."""
+def small_plan() -> BenchPlan:
+    """Four missions of a minute and a half for each of two planners, in two places."""
     places = places_of_worlds(["park:5@300", "plaza:5@300"])
     split = make_split("small", places, share=Share(), dealing=Dealing(3, time_limit_s=90.0))
     split = replace(split, episodes=split.episodes[:2] + split.episodes[-2:])
-    with RunStore.create(folder, BenchPlan(split, ("llm-rrt", "nearest-frontier"), base=SHORT), {}) as store:
+    return BenchPlan(split, ("llm-rrt", "nearest-frontier"), base=SHORT)
+
+
+def make_bench(folder: Path) -> Path:
+    """Run that plan; the records are kept."""
+    with RunStore.create(folder, small_plan(), {}) as store:
         run_bench(store, Workers())
     return folder
 

@@ -128,6 +128,7 @@ def test_a_broken_run_says_what_is_wrong(tmp_path: Path, bench: Path) -> None:
         answer = ask(server, f"/api/runs/{run['id']}")
         assert answer.status == 422
         assert "run" in answer.json["error"]
+        assert str(tmp_path) not in answer.json["error"] + run["fault"]
 
 
 def test_text_of_models_and_people_stays_text(tmp_path: Path, record: EpisodeRecord) -> None:

@@ -37,7 +37,7 @@ def create_app(
     """
     app = FastAPI(title="reasoned-explorer", docs_url=None, redoc_url=None, openapi_url=None, redirect_slashes=False)
     app.state.guard = guard
-    add_error_answers(app)
+    add_error_answers(app, library.root)
     app.include_router(_about_routes(library, guard, live))
     app.include_router(_run_routes(library))
     app.include_router(mission_routes(Desk(library)))
@@ -51,8 +51,13 @@ def create_app(
     return app
 
 
-def add_error_answers(app: FastAPI) -> None:
-    """Have every error answered with one sentence and the right status."""
+def add_error_answers(app: FastAPI, root: Path | None = None) -> None:
+    """Have every error answered with one sentence and the right status.
+
+    Args:
+        app: The application.
+        root: Where its files lie is not said.
+    """
 
     async def refused(_request: Request, error: Exception) -> Response:
         status = error.status_code if isinstance(error, StarletteHTTPException) else 500
@@ -60,7 +65,8 @@ def add_error_answers(app: FastAPI) -> None:
         return JSONResponse({"error": said}, status, headers=getattr(error, "headers", None))
 
     async def not_ours(_request: Request, error: Exception) -> Response:
-        return JSONResponse({"error": str(error)}, _status_of(error))
+        said = str(error) if root is None else str(error).replace(str(root), root.name)
+        return JSONResponse({"error": said}, _status_of(error))
 
     async def not_valid(_request: Request, error: Exception) -> Response:
         faults = error.errors() if isinstance(error, RequestValidationError) else []

@@ -74,7 +74,7 @@ class BenchRun:
                 said["missions"] = len(store.finished())
                 said["methods"] = list(store.plan.methods)
         except (InputError, PartError, sqlite3.Error) as error:
-            said["fault"] = str(error)
+            said["fault"] = str(error).replace(str(self.folder), self.name)
         return said
 
     def listing(self) -> Listing:
@@ -117,7 +117,7 @@ class BenchRun:
             record=unpacked(path),
             method=method,
             pair_key=opaque_id(vehicle, name),
-            place=split.place(found.place) if split and found.place in split.world_digests else None,
+            place=split.place(found.place) if split and found.place and found.place in split.world_digests else None,
         )
 
     def _split_of(self, store: RunStore) -> Split | None:
