@@ -203,3 +203,12 @@ def test_looking_leaves_nothing_behind(tmp_path: Path, bench: Path) -> None:
     (run,) = Library(folder).runs()
     run.mission(run.listing().rows[0][0])
     assert {path: path.stat().st_mtime_ns for path in folder.rglob("*")} == before
+
+
+def test_reading_ahead_fails_on_nothing(tmp_path: Path, bench: Path) -> None:
+    library = Library(bench)
+    library.read_ahead()
+    assert len(library.runs()[0].listing().rows) == MISSIONS
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "run.sqlite").write_bytes(b"broken")
+    Library(tmp_path / "run").read_ahead()

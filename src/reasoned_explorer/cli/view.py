@@ -77,6 +77,8 @@ def view_folder(folder: Path, options: PageOptions) -> None:
     import_web("fastapi")
     from reasoned_explorer.viewer.app import create_app, guarded
 
+    # A large run is read while the person reaches for the browser.
+    threading.Thread(target=library.read_ahead, name="reading ahead", daemon=True).start()
     serve_until_stopped(
         guarded(create_app(library, guard=guard), guard),
         guard,

@@ -6,13 +6,14 @@ followed only as far as it stays in it: a link that leads elsewhere is as good a
 
 import os
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
 
 from reasoned_explorer.evaluation.bench.store import STORE_NAME
 from reasoned_explorer.evaluation.record_file import RECORD_NAME
-from reasoned_explorer.model import Fault, RecordError
+from reasoned_explorer.model import Fault, InputError, PartError, RecordError
 from reasoned_explorer.model.checks import is_there
 from reasoned_explorer.viewer.bench_runs import BenchRun
 from reasoned_explorer.viewer.listing import opaque_id
@@ -96,6 +97,15 @@ class Library:
             expected = f"a {STORE_NAME} or a {RECORD_NAME}, at most {DEPTH} folders deep"
             fault = Fault(f"{self.root} holds no run", expected, "rex run and rex bench leave some")
             raise RecordError("runs", [fault])
+
+    def read_ahead(self) -> None:
+        """Read what the page asks for first: the runs, and the missions where there is only one run."""
+        with suppress(InputError, PartError):
+            runs = self.runs()
+            for run in runs:
+                run.about()
+            if len(runs) == 1:
+                runs[0].listing_json()
 
     def mission_ids(self, folder: Path) -> tuple[str, str]:
         """Return by which run and mission ids the mission in a folder is listed, whether it is there yet or not."""
