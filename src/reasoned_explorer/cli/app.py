@@ -8,11 +8,14 @@ import typer
 from reasoned_explorer import __version__
 from reasoned_explorer.cli.answers import answering
 from reasoned_explorer.cli.bench_app import add_commands
+from reasoned_explorer.cli.export_app import add_export
 from reasoned_explorer.cli.look_app import add_look
 from reasoned_explorer.cli.minds_app import minds_app
 from reasoned_explorer.cli.model_arguments import BaseUrl, KeyVariable, Prices, SampleAnew, Yes
+from reasoned_explorer.cli.rate_app import add_rate
 from reasoned_explorer.cli.serve_app import add_serve
 from reasoned_explorer.cli.vehicles_app import CameraAt, CameraFov, Fence, Gps, MaxSpeed, Ntrip, vehicles_app
+from reasoned_explorer.cli.view_app import Host, Port, add_view
 from reasoned_explorer.cli.worlds_app import worlds_app
 
 app = typer.Typer(
@@ -26,8 +29,11 @@ app.add_typer(worlds_app, name="worlds")
 app.add_typer(minds_app, name="minds")
 app.add_typer(vehicles_app, name="vehicle")
 add_commands(app)
+add_export(app)
 add_look(app)
+add_rate(app)
 add_serve(app)
+add_view(app)
 
 
 def _version(*, value: bool) -> None:
@@ -136,6 +142,11 @@ def run(
         str, typer.Option(help="What simulated captioners go by: lines or pixels; see rex names.")
     ] = "pixels",
     yes: Yes = False,
+    view: Annotated[
+        bool, typer.Option("--view", help="Show it on a page in a browser while it runs, and then until Ctrl-C.")
+    ] = False,
+    view_host: Host = "127.0.0.1",
+    view_port: Port = None,
     map_: Annotated[bool, typer.Option("--map/--no-map", help="Draw the map picture.")] = True,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the summary.")] = False,
 ) -> None:
@@ -150,6 +161,7 @@ def run(
     from reasoned_explorer.cli.models import ModelOptions
     from reasoned_explorer.cli.run import RunOptions, run_from_options
     from reasoned_explorer.cli.vehicles import VehicleOptions
+    from reasoned_explorer.cli.view import PageOptions
 
     run_from_options(
         RunOptions(
@@ -192,6 +204,7 @@ def run(
             conditions=conditions,
             eyes=eyes,
             quiet=quiet,
+            page=PageOptions(host=view_host, port=view_port) if view else None,
             models=ModelOptions(
                 base_url=base_url,
                 key_variable=key_variable,

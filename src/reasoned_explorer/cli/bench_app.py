@@ -1,4 +1,4 @@
-"""The commands of many missions: ``bench``, ``compare``, ``export``, ``report``, ``ablate``."""
+"""The commands of many missions: ``bench``, ``compare``, ``report``, ``ablate``."""
 
 from pathlib import Path
 from typing import Annotated
@@ -48,7 +48,6 @@ def add_commands(app: typer.Typer) -> None:
     """Add the commands to ``rex``."""
     app.command()(bench)
     app.command()(compare)
-    app.command("export")(export_)
     app.command()(report)
     app.add_typer(ablate_app, name="ablate")
 
@@ -215,17 +214,6 @@ def compare(
     from reasoned_explorer.cli.compare import compare_runs
 
     compare_runs(first, second)
-
-
-@answering
-def export_(
-    run: Run,
-    path: Annotated[Path, typer.Argument(metavar="FILE", help="results.csv or results.parquet")],
-) -> None:
-    """Write every mission of a run into a CSV or Parquet file."""
-    from reasoned_explorer.cli.compare import export_run
-
-    export_run(run, path)
 
 
 @answering

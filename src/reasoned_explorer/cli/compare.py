@@ -1,11 +1,10 @@
-"""``rex compare`` and ``rex export``: what comes of runs that are there."""
+"""``rex compare``."""
 
 from pathlib import Path
 
 from reasoned_explorer.cli.bench import results_of
 from reasoned_explorer.cli.console import Output
 from reasoned_explorer.cli.sheets import print_sheet
-from reasoned_explorer.evaluation.bench.export import export
 from reasoned_explorer.evaluation.bench.store import RunStore
 from reasoned_explorer.evaluation.bench.tables import compared_sheet
 from reasoned_explorer.model import Fault, InputError
@@ -48,10 +47,3 @@ def _run_and_method(text: str) -> tuple[Path, str | None]:
     """Return the run and the method that ``RUN`` or ``RUN::METHOD`` means."""
     folder, _, name = text.partition("::")
     return Path(folder), name or None
-
-
-def export_run(run: Path, path: Path) -> None:
-    """Write a run's results into a CSV or Parquet file."""
-    with RunStore.read(run) as store:
-        count = export(store, path)
-    Output().print(f"{count} missions in {path}", markup=False, soft_wrap=True)

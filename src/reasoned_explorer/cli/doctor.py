@@ -44,6 +44,10 @@ PARTS = (
     Part("typer", "typer", "the command line"),
     Part("rich", "rich", "progress"),
     Part("pyarrow", "pyarrow", "results as Parquet", "pip install 'reasoned-explorer[parquet]'", core=False),
+    Part("rerun-sdk", "rerun", "missions for Rerun", "pip install 'reasoned-explorer[rerun]'", core=False),
+    Part("foxglove-sdk", "foxglove", "missions for Foxglove", "pip install 'reasoned-explorer[mcap]'", core=False),
+    Part("gpxpy", "gpxpy", "missions as GPX", "pip install 'reasoned-explorer[gpx]'", core=False),
+    Part("nltk", "nltk", "agreement between raters", "pip install 'reasoned-explorer[rate]'", core=False),
     Part("ray", "ray", "a benchmark on a cluster", "pip install 'reasoned-explorer[ray]'", core=False),
     Part(
         "gymnasium",
@@ -53,6 +57,8 @@ PARTS = (
         core=False,
     ),
     Part("av", "av", "cameras, /dev/video0 or rtsp://", "pip install 'reasoned-explorer[cameras]'", core=False),
+    Part("fastapi", "fastapi", "rex view, the page of missions", "pip install 'reasoned-explorer[view]'", core=False),
+    Part("uvicorn", "uvicorn", "rex view, the page of missions", "pip install 'reasoned-explorer[view]'", core=False),
     Part("torch", "torch", "models on this machine, hf:NAME", "pip install 'reasoned-explorer[local]'", core=False),
     Part(
         "transformers",
@@ -122,7 +128,7 @@ def print_report() -> None:
         missing_core += part.core
         say(f"  {'MISSING' if part.core else 'optional'}  {part.package}: {part.purpose}; get it with: {part.command}")
     say(_minds_line())
-    say("not there yet: ROS 2, the web page")
+    say("not there yet: ROS 2")
     if missing_core:
         say(f"{missing_core} needed packages are missing")
 

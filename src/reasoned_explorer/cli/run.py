@@ -17,6 +17,7 @@ from reasoned_explorer.cli.models import ModelOptions
 from reasoned_explorer.cli.parsing import BoxDeg, check_start_form, parse_bbox, parse_start
 from reasoned_explorer.cli.progress import Progress, header_lines, summary_lines
 from reasoned_explorer.cli.vehicles import VehicleOptions
+from reasoned_explorer.cli.view import PageOptions, page_beside
 from reasoned_explorer.evaluation.field_mission import (
     NO_WORLD,
     FieldMission,
@@ -39,6 +40,7 @@ from reasoned_explorer.model.record import MissionEnd, StepRecord
 from reasoned_explorer.model.stopping import stop_if_asked
 from reasoned_explorer.planning.setting_pairs import parse_planner_settings
 from reasoned_explorer.task.reading import read_goal
+from reasoned_explorer.viewer.serving import import_web
 from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.files import save_world
 from reasoned_explorer.world.opening import KEPT_SUFFIX, check_world_name, open_world_with_notes
@@ -80,6 +82,7 @@ class RunOptions:
     eyes: str
     quiet: bool
     models: ModelOptions
+    page: PageOptions | None = None
 
     @property
     def profile(self) -> str:
@@ -186,6 +189,8 @@ class RunOptions:
         found.check(lambda: check_start_form(self.start))
         settings = self.settings(found)
         self.vehicle.check(found)
+        if self.page is not None:
+            found.check(self.page.guard)
         folder = found.take(lambda: _folder(self), Path())
         found.finish("mission")
         return settings, bbox, folder
@@ -195,6 +200,8 @@ def run_from_options(options: RunOptions) -> None:
     """Run a mission, show it while it runs, keep its record and its map, and exit with what came of it."""
     console = Output()
     settings, bbox, folder = options.checked()
+    if options.page is not None:
+        import_web("uvicorn")  # before anything is made: whoever lacks it is to know now
     if not options.quiet and not _kernels_are_compiled():
         console.print("compiling the kernels, which takes up to a minute (the first time only) …", markup=False)
     stop_if_asked()
@@ -219,9 +226,12 @@ def run_from_options(options: RunOptions) -> None:
             pictures=folder / PICTURES_NAME if options.images else None,
             guarding=guarding and replace(guarding, home=home),
         )
-        with _shown(options, mission, folder, desk, console) as on_step:
-            result = mission.run(folder=folder, on_step=on_step)
-    _finish(options, result, folder, desk, console)
+        with _page(options, folder) as wait:
+            with _shown(options, mission, folder, desk, console) as on_step:
+                result = mission.run(folder=folder, on_step=on_step)
+            code = _finish(options, result, folder, desk, console)
+            wait()
+    raise typer.Exit(code)
 
 
 def _run_afield(options: RunOptions, settings: MissionSettings, folder: Path, console: Output) -> None:
@@ -239,22 +249,35 @@ def _run_afield(options: RunOptions, settings: MissionSettings, folder: Path, co
             desk=desk,
             pictures=folder / PICTURES_NAME if options.images else None,
         )
-        with _shown(options, mission, folder, desk, console) as on_step:
-            result = mission.run(folder=folder, on_step=on_step)
-    _finish(options, result, folder, desk, console)
+        with _page(options, folder) as wait:
+            with _shown(options, mission, folder, desk, console) as on_step:
+                result = mission.run(folder=folder, on_step=on_step)
+            code = _finish(options, result, folder, desk, console)
+            wait()
+    raise typer.Exit(code)
 
 
 def _finish(
     options: RunOptions, result: MissionResult | FieldResult, folder: Path, desk: ModelDesk, console: Output
-) -> None:
-    """Say what came of a mission, keep its map, and exit."""
+) -> ExitCode:
+    """Say what came of a mission, keep its map, and return what to exit with."""
     for line in summary_lines(result.record):
         console.print(line, markup=False, soft_wrap=True)
     _keep(result, folder, draw=options.draw)
     console.print(f"kept in {folder}", markup=False, soft_wrap=True)
     if isinstance(result, MissionResult):
         options.models.say_how_to_go_on(desk, folder)
-    raise typer.Exit(_exit_code(result))
+    return _exit_code(result)
+
+
+@contextmanager
+def _page(options: RunOptions, folder: Path) -> Iterator[Callable[[], None]]:
+    """Show a mission on a page, if that was asked for; gives what waits until a person has seen enough of it."""
+    if options.page is None:
+        yield lambda: None
+        return
+    with page_beside(folder, options.page) as wait:
+        yield wait
 
 
 @contextmanager

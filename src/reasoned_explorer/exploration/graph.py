@@ -154,9 +154,12 @@ class TopologicalGraph:
         Args:
             start: The path point that the robot is at.
         """
-        best: Choice | None = None
-        best_rank: tuple[bool, bool, float, float, int] | None = None
+        return min(self.choices(start), key=_rank, default=None)
+
+    def choices(self, start: int) -> list[Choice]:
+        """Return what each open frontier is worth as seen from a path point, oldest first; see `choose`."""
         length_m = {} if self.straight else self._search(start, None)[1]
+        choices = []
         for frontier in self._open.values():
             distance_m = self._distance_m(start, frontier, length_m)
             penalty = distance_penalty(
@@ -165,11 +168,8 @@ class TopologicalGraph:
             if frontier.known:
                 penalty = max(penalty, _KNOWN_PENALTY)
             value = None if frontier.q is None else round(frontier.q - penalty, 4)
-            # Distances are compared to the millimetre: what lies equally far must not be told apart by rounding.
-            rank = (frontier.forbidden, value is None, -(value or 0.0), round(distance_m, 3), frontier.id)
-            if best_rank is None or rank < best_rank:
-                best, best_rank = Choice(frontier, distance_m, penalty, value), rank
-        return best
+            choices.append(Choice(frontier, distance_m, penalty, value))
+        return choices
 
     def _distance_m(self, start: int, frontier: Frontier, length_m: dict[int, float]) -> float:
         """Return d, given how far it is along known edges to each path point."""
@@ -225,6 +225,13 @@ class TopologicalGraph:
                     length_m[other], came_from[other] = longer_m, point
                     heapq.heappush(queue, (longer_m, other))
         return came_from, length_m
+
+
+def _rank(choice: Choice) -> tuple[bool, bool, float, float, int]:
+    """Return what choices are sorted by, the best first."""
+    frontier, value = choice.frontier, choice.value
+    # Distances are compared to the millimetre: what lies equally far must not be told apart by rounding.
+    return frontier.forbidden, value is None, -(value or 0.0), round(choice.distance_m, 3), frontier.id
 
 
 def _off_leg_m(x_m: float, y_m: float, start: Pose, end: Pose) -> float:

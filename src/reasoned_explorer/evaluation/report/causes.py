@@ -69,17 +69,35 @@ def cause_of(row: MissionRow) -> Cause:
         InputError: If the row's end is none that a mission can have.
     """
     score = row.score
-    if score.success:
-        return Cause.FOUND
-    if row.declared and not score.over_time:
-        if row.compliant is False:
-            return Cause.SHUNNED_GROUND
-        return Cause.FALSE_HALT_BEEN if score.oracle_success else Cause.FALSE_HALT_NEVER
     try:
-        end = MissionEnd(row.end)
+        return cause_among(
+            row.end,
+            success=score.success,
+            declared=row.declared,
+            over_time=score.over_time,
+            compliant=row.compliant,
+            oracle_success=score.oracle_success,
+        )
     except ValueError as error:
         known = ", ".join(MissionEnd)
         raise InputError("row of a mission", [Fault(f"{row.mission_id!r} ended {row.end!r}", known)]) from error
-    if end in _UNDECLARED and not row.declared:
-        return _UNDECLARED[end]
-    return Cause.TIME_OVER_BEEN if score.oracle_success else Cause.TIME_OVER_NEVER
+
+
+def cause_among(
+    end: str, *, success: bool, declared: bool, over_time: bool, compliant: bool | None, oracle_success: bool
+) -> Cause:
+    """Return what became of a mission of which only so much is known; see `MissionRow` and its score.
+
+    Raises:
+        ValueError: If its end is none that a mission can have.
+    """
+    if success:
+        return Cause.FOUND
+    if declared and not over_time:
+        if compliant is False:
+            return Cause.SHUNNED_GROUND
+        return Cause.FALSE_HALT_BEEN if oracle_success else Cause.FALSE_HALT_NEVER
+    kind = MissionEnd(end)
+    if kind in _UNDECLARED and not declared:
+        return _UNDECLARED[kind]
+    return Cause.TIME_OVER_BEEN if oracle_success else Cause.TIME_OVER_NEVER

@@ -1,5 +1,6 @@
 """What stands in a report, in which order."""
 
+from reasoned_explorer.evaluation.human_success import Judged
 from reasoned_explorer.evaluation.report.about import TraceSource
 from reasoned_explorer.evaluation.report.curves import (
     casr_curves,
@@ -20,6 +21,7 @@ from reasoned_explorer.evaluation.report.figures import (
 )
 from reasoned_explorer.evaluation.report.looks import Look
 from reasoned_explorer.evaluation.report.page import Section
+from reasoned_explorer.evaluation.report.people import people_section
 from reasoned_explorer.evaluation.report.results import (
     MOST_CITIES,
     causes_table,
@@ -36,8 +38,11 @@ from reasoned_explorer.evaluation.report.study import Study
 from reasoned_explorer.evaluation.report.trajectories import pair_of, pictures
 
 
-def sections_of(study: Study, looks: dict[str, Look], traces: TraceSource | None) -> tuple[Section, ...]:
+def sections_of(
+    study: Study, looks: dict[str, Look], traces: TraceSource | None, judged: Judged | None = None
+) -> tuple[Section, ...]:
     """Return all sections but the paper's tables and the missions, which the page has in any case."""
+    people = people_section(study, judged) if judged else None
     return (
         Section(
             "results",
@@ -46,6 +51,7 @@ def sections_of(study: Study, looks: dict[str, Look], traces: TraceSource | None
             folded=(every_level_table(study),),
         ),
         _differences(study, looks),
+        *([people] if people else []),
         Section(
             "levels",
             "Arriving and noticing it",

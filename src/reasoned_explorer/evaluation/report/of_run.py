@@ -5,6 +5,7 @@ from pathlib import Path
 
 from reasoned_explorer.evaluation.bench.notes import bounds_among, notes_of
 from reasoned_explorer.evaluation.bench.store import NOTHING_FINISHED, RunStore
+from reasoned_explorer.evaluation.ratings import ratings_of
 from reasoned_explorer.evaluation.report.about import ReportAbout
 from reasoned_explorer.evaluation.report.writing import write_report
 from reasoned_explorer.evaluation.row import MissionRow
@@ -91,4 +92,4 @@ def report_run(store: RunStore, folder: Path) -> Path:
     if not rows:
         raise InputError("run", [NOTHING_FINISHED])
     traces = RunTraces(store) if store.plan.keep_traces else None
-    return write_report(rows, about_run(store, rows), folder, traces=traces)
+    return write_report(rows, about_run(store, rows), folder, traces=traces, ratings=ratings_of(store))

@@ -65,6 +65,7 @@ class Table:
         note: What must be known to read it.
         head: Heads of the file.
         records: Lines of the file.
+        words: Whether its cells hold sentences more than figures.
     """
 
     key: str
@@ -75,6 +76,7 @@ class Table:
     note: str = ""
     head: tuple[str, ...] = ()
     records: tuple[tuple[Value, ...], ...] = ()
+    words: bool = False
 
     @property
     def starts(self) -> frozenset[int]:

@@ -8,6 +8,8 @@ from collections.abc import Sequence
 from io import StringIO
 from pathlib import Path
 
+from reasoned_explorer.evaluation.human_success import Judged
+from reasoned_explorer.evaluation.ratings import Rating
 from reasoned_explorer.evaluation.report.about import ReportAbout, TraceSource
 from reasoned_explorer.evaluation.report.charts import Chart, png_bytes
 from reasoned_explorer.evaluation.report.contents import sections_of
@@ -25,7 +27,12 @@ PAGE_NAME = "index.html"
 
 
 def write_report(
-    rows: Sequence[MissionRow], about: ReportAbout, folder: Path, *, traces: TraceSource | None = None
+    rows: Sequence[MissionRow],
+    about: ReportAbout,
+    folder: Path,
+    *,
+    traces: TraceSource | None = None,
+    ratings: Sequence[Rating] = (),
 ) -> Path:
     """Write the report of a run and return the path of its page.
 
@@ -40,6 +47,8 @@ def write_report(
         folder: Made, or replaced as a whole, once everything is written. A folder that holds something else than a
             report is left alone.
         traces: Gives records for the trajectories; None leaves them out, and the page says so.
+        ratings: What people say of the missions, in the order in which they said it; a section shows it where there is
+            anything.
 
     Raises:
         InputError: If the rows cannot be a report: none, a mission twice, two T_max in one method, an unknown end.
@@ -49,7 +58,8 @@ def write_report(
     study = Study(rows, about)
     _check_target(folder)
     looks = looks_of(study.methods, study.bounds)
-    sections = sections_of(study, looks, traces)
+    judged = Judged.of((entry.row for entry in study.entries), ratings) if ratings else None
+    sections = sections_of(study, looks, traces, judged)
     paper = paper_tables()
     contents: dict[str, bytes] = {PAGE_NAME: page_html(study, looks, sections, paper).encode()}
     charts: dict[str, Chart] = {chart.key: chart for section in sections for chart in section.charts}
