@@ -11,7 +11,7 @@ export OMP_NUM_THREADS := 1
 TORCH ?= torch==2.13.0$(if $(filter Linux,$(shell uname -s)),+cpu)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup minilm local vendor demo test check format docs bench clean
+.PHONY: help setup minilm local vendor rerun demo test check format docs bench clean
 
 help: ## Say what there is to make
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | sort
@@ -43,6 +43,10 @@ $(VENV)/.local: $(READY)
 # Its metadata ask for tools that build packages, which nothing here needs: without its dependencies.
 vendor: $(READY) ## Get Unitree's own library, which ours is tested against (optional, x86-64 Linux, BSD)
 	$(BIN)/python -m pip install --quiet --no-deps 'unitree_legged_sdk==3.8.20231105'
+
+# Half a gigabyte, of which only one kind of export makes use.
+rerun: $(READY) ## Get Rerun's library, for exports to .rrd and their tests (optional, 490 MB)
+	$(BIN)/python -m pip install --quiet --editable '.[rerun]'
 
 setup: $(READY) ## Set up the virtual environment
 
