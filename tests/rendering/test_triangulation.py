@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from reasoned_explorer.rendering import triangulation
 from reasoned_explorer.rendering.triangulation import triangles_of
 
 Floats = NDArray[np.float64]
@@ -121,3 +122,14 @@ def test_a_hole_that_touches_the_outline_corner_to_corner(turns: int, start: int
 def test_places_far_from_the_origin_are_as_exact() -> None:
     far = SQUARE + 250_000.0
     np.testing.assert_allclose(triangles_of(far) - 250_000.0, triangles_of(SQUARE), atol=1e-9)
+
+
+@settings(deadline=None, max_examples=60)
+@given(block_plans() | stars())
+def test_little_work_and_much_are_done_alike_one_in_python_and_one_compiled(polygon: shapely.Polygon) -> None:
+    outer, holes = _rings(polygon)
+    in_python = triangles_of(outer, holes)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(triangulation, "_FEW_CORNERS", -1)
+        patch.setattr(triangulation, "_FEW_PAIRS", -1)
+        np.testing.assert_array_equal(triangles_of(outer, holes), in_python)

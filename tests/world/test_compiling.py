@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from numba.core.errors import NumbaError
 
-from reasoned_explorer.world.compiling import inlined, kernel, part
+from reasoned_explorer.world.compiling import inlined, interpreted, kernel, part
 
 #: Two kernels that share a part, as a module of its own: numba keeps nothing of what is typed in.
 MODULE = """
 import math
-from reasoned_explorer.world.compiling import inlined, kernel, part
+from reasoned_explorer.world.compiling import inlined, interpreted, kernel, part
 
 @part
 def _length(points, k):
@@ -81,6 +81,14 @@ def test_a_kernel_with_its_parts_computes_what_python_does() -> None:
     changed = scale(values, 1.5)
     np.testing.assert_array_equal(values[[0, 1, 2, 4, 5]], in_python[[0, 1, 2, 4, 5]])
     assert changed == 5
+
+
+def test_a_kernel_can_be_done_in_the_python_that_it_is_written_in() -> None:
+    compiled, in_python = np.array([0.5, -3.0, 1.0, 7.0]), np.array([0.5, -3.0, 1.0, 7.0])
+    assert interpreted(scale)(in_python, 1.5) == scale(compiled, 1.5) == 4
+    np.testing.assert_array_equal(in_python, compiled)
+    # What only numba refuses shows that it is not asked.
+    assert interpreted(make_zeros)(3).tolist() == [0.0, 0.0, 0.0]
 
 
 def test_a_kernel_is_compiled_for_every_kind_of_numbers_that_it_is_given() -> None:

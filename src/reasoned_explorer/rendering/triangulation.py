@@ -6,11 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reasoned_explorer.rendering.triangulation_kernels import tidy, triangulate
+from reasoned_explorer.world.compiling import interpreted
 from reasoned_explorer.world.rounding import millimetres
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
+
+#: So many corners to tidy, and so many pairs of corners of one polygon to triangulate, are done before compiled code is
+#: even read from disk, let alone compiled; seconds of a first picture.
+_FEW_CORNERS, _FEW_PAIRS = 2_000, 20_000
 
 
 def triangles_of(outer: Floats, holes: Sequence[Floats] = ()) -> Floats:
@@ -57,7 +62,8 @@ def tidy_rings(points: Ints, ring_starts: Ints, is_hole: Bools, slack: int, leas
         Places in ``points`` of the corners that stay, and where each ring begins in them, and the last ends.
     """
     found, starts = np.empty(len(points), np.int64), np.empty(len(ring_starts), np.int64)
-    tidy(points, ring_starts, is_hole, slack, least_area, found, starts)
+    tidied = interpreted(tidy) if len(points) <= _FEW_CORNERS else tidy
+    tidied(points, ring_starts, is_hole, slack, least_area, found, starts)
     return found[: starts[-1]], starts
 
 
@@ -79,7 +85,8 @@ def triangulate_all(points: Ints, ring_starts: Ints, polygon_starts: Ints) -> In
     corner, after, before = np.empty((3, room), np.int64)
     merged, tried = np.empty((2, room), np.bool_)
     triangles = np.empty((len(points) + 2 * len(ring_starts), 3), np.int64)
-    made = triangulate(points, ring_starts, polygon_starts, corner, after, before, merged, tried, triangles)
+    cut = interpreted(triangulate) if int(np.sum(corners**2)) <= _FEW_PAIRS else triangulate
+    made = cut(points, ring_starts, polygon_starts, corner, after, before, merged, tried, triangles)
     return triangles[:made]
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from copy import copy
 from functools import lru_cache
 from pathlib import Path
+from types import FunctionType
 from typing import Any, TypeVar
 
 from numba import njit
@@ -53,6 +54,22 @@ def inlined(function: F) -> F:
     """Return a `part` that becomes a piece of each of its callers: for those that take many arrays."""
     compiled: F = njit(**_OPTIONS, no_cpython_wrapper=True, pipeline_class=_PartCompiler, forceinline=True)(function)
     return compiled
+
+
+@lru_cache
+def interpreted(compiled: F) -> F:
+    """Return a `kernel` as the Python that it is written in, its parts from the same file likewise.
+
+    It computes the same, as long as whole numbers do not overflow, and a hundred times as slowly: right for so little
+    work that compiling it, or only reading what was compiled, takes longer.
+    """
+    function: Any = getattr(compiled, "py_func", compiled)
+    names: dict[str, Any] = {}
+    for name, value in function.__globals__.items():
+        plain = getattr(value, "py_func", None)
+        names[name] = value if plain is None else FunctionType(plain.__code__, names, name, plain.__defaults__)
+    python: F = names[function.__name__]
+    return python
 
 
 class _Compiler(CompilerBase):  # type: ignore[misc]
