@@ -41,7 +41,7 @@ def test_a_kept_picture_is_shown_as_it_was_kept(pictured: tuple[EpisodeRecord, P
     record, folder = pictured
     files, views = _files(record, folder), Views(Worlds())
     assert views.state(files, record.header) == "kept"
-    assert views.png(files, record, 0, 1) == (folder / "0000-0000-0001.png").read_bytes()
+    assert views.picture(files, record, 0, 1) == (folder / "0000-0000-0001.png").read_bytes()
     looks = sorted({path.name.rpartition("-")[0] for path in folder.glob("*.png")})
     assert len(looks) == sum(len({view.key[:2] for view in step.views}) for step in record.steps)
 
@@ -53,8 +53,8 @@ def test_what_is_drawn_anew_is_what_was_seen(pictured: tuple[EpisodeRecord, Path
     assert views.state(drawn, record.header) == "drawn"
     seen = [step.step for step in record.steps if step.views]
     for step in (seen[0], seen[-1]):
-        was, other = _pixels(views.png(kept, record, step, 0)), _pixels(views.png(kept, record, step, 2))
-        again = _pixels(views.png(drawn, record, step, 0, width_px=224))
+        was, other = _pixels(views.picture(kept, record, step, 0)), _pixels(views.picture(kept, record, step, 2))
+        again = _pixels(views.picture(drawn, record, step, 0, width_px=224))
         assert again.shape == was.shape
         assert np.abs(again - was).mean() < 0.25 * np.abs(again - other).mean()
 
@@ -64,9 +64,9 @@ def test_a_picture_can_be_asked_for_smaller(pictured: tuple[EpisodeRecord, Path]
     large = tmp_path / "0000-0000-0000.png"
     Image.new("RGB", (640, 480), (200, 0, 0)).save(large)
     views, files = Views(Worlds()), _files(record, tmp_path)
-    assert _pixels(views.png(files, record, 0, 0, width_px=320)).shape == (240, 320, 3)
-    assert _pixels(views.png(files, record, 0, 0)).shape == (480, 640, 3)
-    assert _pixels(views.png(_files(record, None), record, 0, 0, width_px=300)).shape == (300, 300, 3)
+    assert _pixels(views.picture(files, record, 0, 0, width_px=320)).shape == (240, 320, 3)
+    assert _pixels(views.picture(files, record, 0, 0)).shape == (480, 640, 3)
+    assert _pixels(views.picture(_files(record, None), record, 0, 0, width_px=300)).shape == (300, 300, 3)
 
 
 def test_what_is_no_picture_is_not_sent(pictured: tuple[EpisodeRecord, Path], tmp_path: Path) -> None:
@@ -80,7 +80,7 @@ def test_what_is_no_picture_is_not_sent(pictured: tuple[EpisodeRecord, Path], tm
     afield = replace(record, header=replace(record.header, world_digest=""))
     views, files = Views(Worlds()), _files(record, folder)
     for index in range(3):
-        assert views.png(files, afield, 0, index) is None
+        assert views.picture(files, afield, 0, index) is None
     assert kept_path(files, record, 0, 1) is None
 
 
@@ -89,14 +89,14 @@ def test_a_mission_without_world_and_pictures_has_none(pictured: tuple[EpisodeRe
     afield = replace(record, header=replace(record.header, world="none", world_digest=""))
     views, files = Views(Worlds()), _files(afield, None)
     assert views.state(files, afield.header) == "none"
-    assert views.png(files, afield, 0, 0) is None
+    assert views.picture(files, afield, 0, 0) is None
 
 
 @pytest.mark.parametrize(("step", "index"), [(-1, 0), (0, -1), (0, 99), (10_000, 0)])
 def test_a_view_that_there_was_not_is_not_found(pictured: tuple[EpisodeRecord, Path], step: int, index: int) -> None:
     record, folder = pictured
     with pytest.raises(UnknownIdError):
-        Views(Worlds()).png(_files(record, folder), record, step, index)
+        Views(Worlds()).picture(_files(record, folder), record, step, index)
 
 
 def test_views_are_from_where_the_vehicle_truly_was(record: EpisodeRecord) -> None:

@@ -62,6 +62,7 @@ def rate_run(run: Path, options: RateOptions) -> None:
     """
     rater, choice, guard = options.checked(run)
     import_web("fastapi")
+    from reasoned_explorer.viewer.app import guarded
     from reasoned_explorer.viewer.rating_routes import create_rating_app
 
     with RatingStore(run) as store:
@@ -71,5 +72,5 @@ def rate_run(run: Path, options: RateOptions) -> None:
         if desk.left_out:
             said = f"{desk.left_out:,} missions are left out: their records were not kept"
             Output().print(said, markup=False, soft_wrap=True)
-        app = guard.protects(create_rating_app(desk, guard=guard, rater=rater))
+        app = guarded(create_rating_app(desk, guard=guard, rater=rater), guard)
         serve_until_stopped(app, guard, options.page, lambda url: f"{desk.count:,} missions are rated at {url}")

@@ -9,6 +9,7 @@ from fastapi import APIRouter, FastAPI, HTTPException, Request, Response
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import FileResponse, JSONResponse
 from starlette.exceptions import HTTPException as StarletteHTTPException
+from starlette.middleware.gzip import GZipMiddleware
 
 from reasoned_explorer import __version__
 from reasoned_explorer.model import InputError, PartError, ReasonedExplorerError
@@ -20,6 +21,8 @@ from reasoned_explorer.viewer.runs import UnknownIdError
 from reasoned_explorer.viewer.security import Guard
 
 _JSON = "application/json"
+#: What is shorter fits into a packet or two as it is.
+_LEAST_GZIP_BYTES = 2048
 
 
 def create_app(
@@ -168,5 +171,5 @@ def _file(known: dict[str, Path], name: str) -> Response:
 
 
 def guarded(app: FastAPI, guard: Guard) -> Any:
-    """Return an application that answers only those who may ask."""
-    return guard.protects(app)
+    """Return an application that answers only those who may ask, in few bytes where the link may be slow."""
+    return guard.protects(GZipMiddleware(app, minimum_size=_LEAST_GZIP_BYTES, compresslevel=4))

@@ -14,7 +14,7 @@ from reasoned_explorer.viewer.ids import checked_id, tagged
 from reasoned_explorer.viewer.library import Library
 from reasoned_explorer.viewer.replay import replay_json
 from reasoned_explorer.viewer.runs import MissionFiles
-from reasoned_explorer.viewer.views import WIDTH_RANGE_PX, Views
+from reasoned_explorer.viewer.views import WIDTH_RANGE_PX, Encoding, Views
 from reasoned_explorer.viewer.world_map import box_of, map_json, map_tag
 from reasoned_explorer.viewer.worlds import Worlds
 
@@ -114,9 +114,12 @@ def mission_routes(desk: Desk) -> APIRouter:
         request: Request,
         width: int | None = Query(None, ge=WIDTH_RANGE_PX[0], le=WIDTH_RANGE_PX[1]),
     ) -> Response:
+        # Whoever says how wide wants to look, not to measure: where the browser can, few bytes of it are sent.
+        encoding: Encoding = "WEBP" if width and "image/webp" in request.headers.get("accept", "") else "PNG"
+
         def picture() -> bytes | None:
             files = desk.files(run, mission)
-            return desk.views.png(files, desk.record(files), step, index, width_px=width)
+            return desk.views.picture(files, desk.record(files), step, index, width_px=width, encoding=encoding)
 
         # One at a time, and none for somebody who has scrolled on meanwhile.
         async with drawing:
@@ -125,6 +128,7 @@ def mission_routes(desk: Desk) -> APIRouter:
             data = await asyncio.to_thread(picture)
         if data is None:
             raise HTTPException(404, "there is no picture of this view, and none can be drawn")
-        return Response(data, media_type="image/png", headers={"Cache-Control": "private, max-age=300"})
+        headers = {"Cache-Control": "private, max-age=300", "Vary": "Accept"}
+        return Response(data, media_type=f"image/{encoding.lower()}", headers=headers)
 
     return router
