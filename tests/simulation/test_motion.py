@@ -272,3 +272,13 @@ def test_its_cruise_speed_can_be_changed():
     slow_s, fast_s = slow.drive(target, leg=0).duration_s, fast.drive(target, leg=0).duration_s
     assert fast.profile.speed_mps == 6.0
     assert fast_s < 0.75 * slow_s
+
+
+@pytest.mark.parametrize("name", sorted(PROFILES))
+def test_after_a_sudden_stop_it_knows_that_it_stands(name):
+    machine = body(name)
+    machine.drive(Pose(0.0, 30.0), leg=0, limit_s=4.0)
+    machine.drive(Pose(machine.pose.x_m + 9.0, machine.pose.y_m), leg=1, limit_s=2.0)
+    believed, there = machine.pose, machine.true_pose
+    assert believed.distance_to_m(there.x_m, there.y_m) < 0.3
+    assert not machine.filter.rejects[:2].any()

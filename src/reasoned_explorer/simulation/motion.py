@@ -257,7 +257,8 @@ class Body:
             leg: Number of the motion: what its draws are keyed by.
             walls: What is in the way, shape (n, 4): x0, y0, x1, y1.
             discs: Likewise, shape (m, 3): x, y, radius.
-            limit_s: Stop after so many seconds, wherever it is; by default three times what it should take.
+            limit_s: Stop after so many seconds, wherever it is, at once, which the filter knows; by default three times
+                what it should take.
             face: Whether to turn to the target's heading in the end.
         """
         pose = self.pose
@@ -269,8 +270,13 @@ class Body:
         motion = self._run(
             leg, due_s=due_s, distance_m=distance_m, stand_s=stand_s, limit_s=limit_s, walls=walls, discs=discs
         )
+        if limit_s is not None:
+            # A filter that took it to fly on would refuse fixes for seconds.
+            self._rest()
+            self.filter.stand(0.0)
+            return motion
         rest_s = self.profile.settle_s - stand_s
-        if limit_s is None and rest_s > 0.0:
+        if rest_s > 0.0:
             self.wait(rest_s)
             motion = _lengthened(motion, rest_s)
         return motion
