@@ -8,6 +8,7 @@ time line. The page and the browser share this machine's processors.
 
 import argparse
 import tempfile
+import threading
 from dataclasses import replace
 from pathlib import Path
 from statistics import median
@@ -160,7 +161,10 @@ def main() -> None:
         make_list(folder / "list", given.missions)
         make_mission(folder / "missions" / "long", given.steps)
         guard = Guard()
-        with Server(guarded(create_app(Library(folder), guard=guard), guard)) as server, sync_playwright() as play:
+        library = Library(folder)
+        # As ``rex view`` does: runs are read while somebody reaches for the browser.
+        threading.Thread(target=library.read_ahead, daemon=True).start()
+        with Server(guarded(create_app(library, guard=guard), guard)) as server, sync_playwright() as play:
             browser = play.chromium.launch(executable_path=given.chromium, args=["--no-sandbox"])
             page = browser.new_page(viewport={"width": 1280, "height": 720})
             _measure(page, server.url, given.runs)

@@ -11,6 +11,7 @@ import pytest
 from reasoned_explorer.evaluation.bench.store import RunStore
 from reasoned_explorer.model import InputError, RecordError
 from reasoned_explorer.model.record import EpisodeRecord
+from reasoned_explorer.viewer.bench_runs import BenchRun
 from reasoned_explorer.viewer.library import Library
 from reasoned_explorer.viewer.runs import Run, UnknownIdError
 from tests.viewer.small_runs import MISSIONS, write_record
@@ -212,3 +213,11 @@ def test_reading_ahead_fails_on_nothing(tmp_path: Path, bench: Path) -> None:
     (tmp_path / "run").mkdir()
     (tmp_path / "run" / "run.sqlite").write_bytes(b"broken")
     Library(tmp_path / "run").read_ahead()
+    shutil.copytree(bench, tmp_path / "good")
+    several = Library(tmp_path)
+    several.read_ahead()
+    good, broken = several.runs()
+    assert (good.name, broken.name) == ("good", "run")
+    assert isinstance(good, BenchRun)
+    assert good._kept is not None  # nobody has asked for it yet
+    assert "fault" in broken.about()

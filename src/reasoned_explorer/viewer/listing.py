@@ -1,9 +1,9 @@
 """The missions of a run as the page lists them: columns, rows, and words that stand for what is said often."""
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import blake2b
+from math import isfinite
 from typing import Any
 
 from pydantic_core import to_json
@@ -79,13 +79,11 @@ class Listing:
             }
             made[name] = [kinds.get(value) for value in made[name]]
         for name, digits in _DIGITS.items():
-            made[name] = [None if value is None else _rounded(value, digits) for value in made[name]]
+            made[name] = [
+                round(value, digits) if value is not None and isfinite(value) else None for value in made[name]
+            ]
         return cls(list(places), list(zip(*(made[name] for name in COLUMNS), strict=True)))
 
     def as_json(self, about: Mapping[str, Any]) -> bytes:
         """Return it as the page reads it, with what else there is to say of the run."""
         return to_json({**about, "words": self.words, "columns": COLUMNS, "coded": CODED, "rows": self.rows})
-
-
-def _rounded(value: float, digits: int) -> float | None:
-    return round(value, digits) if math.isfinite(value) else None
