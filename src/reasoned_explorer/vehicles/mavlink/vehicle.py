@@ -182,8 +182,9 @@ class MavlinkVehicle(Vehicle):
     async def _start(self) -> None:
         await self.connect()
         if self.autopilot.flavour.flies != self.profile.flies:
-            is_what = "flies" if self.autopilot.flavour.flies else "drives"
-            raise PartError(PART, f"the autopilot's machine {is_what}, and {self.profile.name} does not")
+            is_what, other = ("flies", "drone") if self.autopilot.flavour.flies else ("drives", "go1")
+            reason = f"the autopilot's machine {is_what}, and {self.profile.name} does not"
+            raise PartError(PART, f"{reason}; name a profile that does before the address: {other}@mavlink:…")
         await self._begin_pace()
         self._body.catch()
         check_stands(PART, self.pose, self._stands)
