@@ -1,4 +1,4 @@
-"""What the README tells people to type is run, word for word; the benchmark alone goes by sight lines, in half the time."""
+"""What the README tells people to type is run, word for word; the benchmark alone by sight lines, in half the time."""
 
 import re
 import shlex
