@@ -3,7 +3,7 @@ import statistics
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reasoned_explorer.model.draws import choice, key_of, normal, uniform
+from reasoned_explorer.model.draws import choice, further, key_of, normal, normals, uniform
 
 keys = st.lists(st.one_of(st.integers(-(2**40), 2**40), st.text(max_size=8)), max_size=5)
 
@@ -28,6 +28,17 @@ def test_normal_draws_have_mean_zero_and_spread_one() -> None:
     draws = [normal(7, index) for index in range(20_000)]
     assert abs(statistics.mean(draws)) < 0.03
     assert abs(statistics.pstdev(draws) - 1.0) < 0.02
+
+
+@given(st.integers(0, 2**63), st.lists(keys.map(tuple), max_size=8))
+def test_many_normal_draws_are_those_of_each(seed: int, many: list[tuple[int | str, ...]]) -> None:
+    again = [key for key in many for _ in range(2)]
+    assert normals(seed, again) == [normal(seed, *key) for key in again]
+
+
+@given(st.integers(0, 2**63), keys, st.integers(-(2**40), 2**40))
+def test_a_key_goes_on(seed: int, parts: list[int | str], last: int) -> None:
+    assert further(key_of(seed, *parts), last) == key_of(seed, *parts, last)
 
 
 def test_every_option_is_chosen_sometimes() -> None:

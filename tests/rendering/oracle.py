@@ -40,7 +40,7 @@ def compared(
 ) -> Comparison:
     view = projection_of(pose, camera, pitch_rad=pitch_rad)
     canvas = renderer._drawn(view, everything=everything)
-    depth, ids = renderer._read(view, canvas, camera)
+    depth, ids = renderer._read(view, canvas)
     levels = shown_levels(renderer.scene, renderer._room().scratch.levels, view)
     moved = view._replace(eye=view.eye + eye_error_m * view.axes[0])
     true_depth, true_ids = cast(renderer.scene, levels, moved)

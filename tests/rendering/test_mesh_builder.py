@@ -76,6 +76,13 @@ def test_normals_and_uvs(name, detail):
     assert np.isfinite(mesh.uvs).all()
 
 
+@pytest.mark.parametrize("name", SOLIDS)
+def test_each_place_is_one_vertex(name):
+    mesh = built(SOLIDS[name][0])
+    assert len(np.unique(mesh.vertices, axis=0)) == len(mesh.vertices)
+    assert set(mesh.triangles.ravel()) == set(range(len(mesh.vertices)))
+
+
 def test_flat_faces_have_flat_normals_and_round_ones_shared_normals():
     box = built(SOLIDS["box"][0])
     assert np.ptp(box.normals, axis=1).max() < 1e-6

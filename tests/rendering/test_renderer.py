@@ -14,6 +14,7 @@ from reasoned_explorer.model import Camera, SettingsError
 from reasoned_explorer.rendering.conditions import PRESETS, Conditions
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.mesh import Model
+from reasoned_explorer.rendering.projection import projection_of, resized
 from reasoned_explorer.rendering.renderer import Picture, Renderer
 from reasoned_explorer.rendering.scene import PICTURE_CLASSES, Scene
 from reasoned_explorer.world.opening import open_world
@@ -56,6 +57,10 @@ def test_ids_are_those_of_pictures() -> None:
     sighted, picture = renderer.ids(EYE, CAMERA), renderer.picture(EYE, CAMERA)
     assert (sighted.instances == picture.instances).all()
     assert (sighted.depth_m == picture.depth_m).all()
+    smaller = Camera(32, 24)
+    assert (
+        renderer.ids_in(resized(projection_of(EYE, CAMERA), smaller)).depth_m == renderer.ids(EYE, smaller).depth_m
+    ).all()
     first_object = FIRST + len(world.buildings)
     classes = renderer.classes(picture.instances)
     for instance in np.unique(picture.instances[picture.instances >= first_object]):

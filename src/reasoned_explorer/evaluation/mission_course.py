@@ -192,11 +192,11 @@ class MissionCourse(ABC):
         )
 
         async def charge_captions(_role: str, key: tuple[int, ...], count: int) -> None:
-            started_s = self.clock.now_s()
+            started_s = round(self.clock.now_s(), 6)
             spent_s = [latency.duration_s("caption", settings.seed, *key, index) for index in range(count)]
             await self.clock.think(max(spent_s, default=0.0))
             ledger.add_all(
-                CallRecord("caption", settings.captioner, (*key, index), started_s, seconds)
+                CallRecord("caption", settings.captioner, (*key, index), started_s, round(seconds, 6))
                 for index, seconds in enumerate(spent_s)
             )
 

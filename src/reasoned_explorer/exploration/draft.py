@@ -144,7 +144,7 @@ def _node(node: ImaginedNode) -> NodeRecord:
         depth=node.scene.depth,
         text=node.scene.text,
         score=_rounded(answer.score) if answer else None,
-        levels=tuple(round(level, 4) for level in levels) if levels else None,
+        levels=tuple([round(level, 4) for level in levels]) if levels else None,
         blocked=bool(answer and answer.blocked),
         forbidden=bool(answer and answer.forbidden),
         fault=node.scene.fault or (answer.fault if answer else None),

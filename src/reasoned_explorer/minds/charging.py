@@ -21,9 +21,11 @@ async def charge_calls(
     if not keys:
         return
     seconds = context.latency.batch_s(role, context.seed, keys)
-    started_s = context.clock.now_s()
+    started_s = round(context.clock.now_s(), 6)
     context.ledger.add_all(
-        CallRecord(role, model, key, started_s, second, fault=fault)
-        for key, second, fault in zip(keys, seconds, faults, strict=True)
+        [
+            CallRecord(role, model, key, started_s, round(second, 6), fault=fault)
+            for key, second, fault in zip(keys, seconds, faults, strict=True)
+        ]
     )
     await context.clock.think(max(seconds))

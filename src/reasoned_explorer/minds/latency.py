@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from reasoned_explorer.model.draws import key_of, normal
+from reasoned_explorer.model.draws import key_of, normal, normals
 from reasoned_explorer.model.errors import Fault, SettingsError, UnknownNameError
 
 _SECONDS = re.compile(r"\d{1,4}(?:\.\d{1,6})?s", re.ASCII)
@@ -89,7 +89,7 @@ class LatencyProfile:
         if latency.median_s == 0.0:
             return tuple(0.0 for _ in calls)
         base = key_of(seed, "latency", role)
-        return tuple(latency.median_s * math.exp(latency.sigma * normal(base, *keys)) for keys in calls)
+        return tuple([latency.median_s * math.exp(latency.sigma * draw) for draw in normals(base, calls)])
 
 
 _PROFILES = {

@@ -6,7 +6,7 @@ function is the finaliser of SplitMix64 (Steele, Lea, Flood: "Fast splittable ps
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from hashlib import blake2b
 from typing import TypeVar
@@ -39,6 +39,11 @@ def key_of(seed: int, *keys: int | str) -> int:
     return state
 
 
+def further(key: int, part: int) -> int:
+    """Return ``key_of(seed, *keys, part)`` for ``key = key_of(seed, *keys)``."""
+    return _mix((key + _GOLDEN + part * 0xD1342543DE82EF95) & _MASK)
+
+
 def uniform(seed: int, *keys: int | str) -> float:
     """Return a number in [0, 1) for a seed and keys."""
     return (key_of(seed, *keys) >> 11) * (1.0 / (1 << 53))
@@ -46,7 +51,26 @@ def uniform(seed: int, *keys: int | str) -> float:
 
 def normal(seed: int, *keys: int | str) -> float:
     """Return a standard normal number for a seed and keys (Box-Muller)."""
-    key = key_of(seed, *keys)
+    return _normal(key_of(seed, *keys))
+
+
+def normals(seed: int, keys: Iterable[tuple[int | str, ...]]) -> list[float]:
+    """Return ``normal(seed, *key)`` for each key, in order: in less time for those that differ in the last place."""
+    found: list[float] = []
+    shared: tuple[int | str, ...] = ()
+    state = key_of(seed)
+    for key in keys:
+        if not key or isinstance(key[-1], str):
+            found.append(normal(seed, *key))
+            continue
+        if key[:-1] != shared:
+            shared = key[:-1]
+            state = key_of(seed, *shared)
+        found.append(_normal(further(state, key[-1])))
+    return found
+
+
+def _normal(key: int) -> float:
     radius = math.sqrt(-2.0 * math.log(1.0 - (key >> 11) * (1.0 / (1 << 53))))
     return radius * math.cos(2.0 * math.pi * (_mix((key + _GOLDEN) & _MASK) >> 11) * (1.0 / (1 << 53)))
 

@@ -203,12 +203,15 @@ class CallRecord:
 
     def rounded(self) -> "CallRecord":
         """Return it with its seconds in whole microseconds, as records keep them."""
+        started_s, latency_s = round(self.started_s, 6), round(self.latency_s, 6)
+        if started_s == self.started_s and latency_s == self.latency_s:
+            return self
         return CallRecord(
             self.role,
             self.model,
             self.key,
-            round(self.started_s, 6),
-            round(self.latency_s, 6),
+            started_s,
+            latency_s,
             self.tokens_in,
             self.tokens_out,
             self.usd,

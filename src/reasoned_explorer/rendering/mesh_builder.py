@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from reasoned_explorer.rendering.material import Material
 from reasoned_explorer.rendering.mesh import Mesh
@@ -420,15 +420,26 @@ class MeshBuilder:
         if own.any():
             normals[own] = np.concatenate([part.normals for part in self._parts if part.normals is not None])
         good = areas > _LEAST_AREA_M2
-        used, compact = np.unique(triangles[good], return_inverse=True)
+        shared, places = _welded(vertices.astype(np.float32), triangles[good])
         return Mesh(
-            vertices=vertices[used].astype(np.float32),
-            triangles=compact.reshape(-1, 3).astype(np.int32),
+            vertices=shared,
+            triangles=places,
             normals=normals[good].astype(np.float32),
             uvs=box_uvs(vertices[triangles[good]], faces[good]).astype(np.float32),
             colours=self._colours(counts)[good].astype(np.float32),
             materials=np.repeat([part.surface.material for part in self._parts], counts)[good].astype(np.uint8),
         )
+
+
+def _welded(vertices: NDArray[np.float32], triangles: IntArray) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+    """Return the vertices that triangles use, each place once, and where they are there: what is drawn is projected."""
+    rows = np.ascontiguousarray(vertices).view(np.dtype((np.void, vertices.dtype.itemsize * 3))).ravel()
+    corners = triangles.ravel()
+    _, firsts, names = np.unique(rows[corners], return_index=True, return_inverse=True)
+    order = np.argsort(firsts)  # as they come: neighbours stay neighbours
+    ranks = np.empty(len(order), np.int32)
+    ranks[order] = np.arange(len(order), dtype=np.int32)
+    return vertices[corners[firsts[order]]], ranks[names].reshape(-1, 3)
 
 
 _EMPTY = Mesh(

@@ -69,6 +69,13 @@ def projection_of(pose: Pose, camera: Camera, *, pitch_rad: float = 0.0, antiali
     return Projection(eye, axes, focal, 0.5 * width, 0.5 * height, width, height, antialias)
 
 
+def resized(view: Projection, camera: Camera) -> Projection:
+    """Return the projection of another camera in the same place, one sample to a pixel; it must be one of that view."""
+    width, height = camera.width_px, camera.height_px
+    focal = 0.5 * width / math.tan(0.5 * camera.horizontal_fov_rad)
+    return Projection(view.eye, view.axes, focal, 0.5 * width, 0.5 * height, width, height, 1)
+
+
 def _faults(pose: Pose, camera: Camera, pitch_rad: float, antialias: int) -> list[Fault]:
     found = []
     if antialias not in {1, 2}:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from reasoned_explorer.rendering.library import Library
 from reasoned_explorer.rendering.projection import NEAR_M, Projection
 from reasoned_explorer.rendering.scene import Cells, Instances
-from reasoned_explorer.world.compiling import kernel, part
+from reasoned_explorer.world.compiling import inlined, kernel, part
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -35,6 +35,8 @@ _BUCKET_M, _BUCKET_STEPS = 50.0, 512.0
 _SLACK = 1e-6
 #: What is in one place with what was drawn before it, up to rounding, stays behind it: no speckles.
 _NEARER = 1.0 + 1e-6
+#: The least number that is more than 0.
+_ABOVE_NOTHING = 5e-324
 _LEAST_NEARNESS = 1.0 / GROUND_REACH_M
 _MOST_NEARNESS = 1.0 / NEAR_M
 #: Things that fill less than this across are left out, pixels.
@@ -245,6 +247,12 @@ def _narrow(slope: float, rest: float, low: float, high: float) -> tuple[float, 
 
 
 @part
+def _least_of(across: float, down: float) -> float:
+    """What an edge's function must be at least: 0 where samples on the edge belong to the triangle, else above it."""
+    return 0.0 if across > 0.0 or (across == 0.0 and down > 0.0) else _ABOVE_NOTHING
+
+
+@inlined
 def _fill_triangle(
     corners: Floats,
     a: int,
@@ -283,9 +291,7 @@ def _fill_triangle(
     ax1, ay1, ar1 = y2 * z0 - z2 * y0, z2 * x0 - x2 * z0, x2 * y0 - y2 * x0
     ax2, ay2, ar2 = y0 * z1 - z0 * y1, z0 * x1 - x0 * z1, x0 * y1 - y0 * x1
     inverse = 1.0 / determinant
-    owns0 = ax0 > 0.0 or (ax0 == 0.0 and ay0 > 0.0)
-    owns1 = ax1 > 0.0 or (ax1 == 0.0 and ay1 > 0.0)
-    owns2 = ax2 > 0.0 or (ax2 == 0.0 and ay2 > 0.0)
+    least0, least1, least2 = _least_of(ax0, ay0), _least_of(ax1, ay1), _least_of(ax2, ay2)
     wide = last_x - first_x > 12
     for y in range(first_y, last_y + 1):
         middle = y + 0.5
@@ -304,12 +310,15 @@ def _fill_triangle(
             edge0 = ax0 * across + rest0
             edge1 = ax1 * across + rest1
             edge2 = ax2 * across + rest2
-            if edge0 < 0.0 or edge1 < 0.0 or edge2 < 0.0:
-                continue
-            if (edge0 == 0.0 and not owns0) or (edge1 == 0.0 and not owns1) or (edge2 == 0.0 and not owns2):
-                continue
             near = np.float32((edge0 + edge1 + edge2) * inverse)
-            if near > nearness[y, x] * _NEARER and near <= _MOST_NEARNESS:
+            # One branch for all: which of them fails is anyone's guess, for the processor too.
+            if (
+                (edge0 >= least0)
+                & (edge1 >= least1)
+                & (edge2 >= least2)
+                & (near > nearness[y, x] * _NEARER)
+                & (near <= _MOST_NEARNESS)
+            ):
                 nearness[y, x] = near
                 owners[y, x] = owner
                 triangles[y, x] = triangle
@@ -488,24 +497,36 @@ def read_out(
     Of a pixel with several samples it is the instance that most of them show, and of equals the nearest; the depth is
     that of its nearest sample.
     """
-    samples = view.samples
+    if view.samples == 1:
+        _read_samples(canvas, ids, depth, found)
+        return
     for y in range(depth.shape[0]):
         for x in range(depth.shape[1]):
-            row, column = y * samples, x * samples
+            row, column = y * 2, x * 2
             owner, nearness = canvas.owners[row, column], canvas.nearness[row, column]
-            if samples == 2:
-                nearness = max(nearness, canvas.nearness[row, column + 1])
-                nearness = max(nearness, canvas.nearness[row + 1, column])
-                nearness = max(nearness, canvas.nearness[row + 1, column + 1])
-                others = (
-                    canvas.owners[row, column + 1],
-                    canvas.owners[row + 1, column],
-                    canvas.owners[row + 1, column + 1],
-                )
-                if others[0] != owner or others[1] != owner or others[2] != owner:
-                    owner, nearness = _most_seen(canvas, ids, row, column)
+            nearness = max(nearness, canvas.nearness[row, column + 1])
+            nearness = max(nearness, canvas.nearness[row + 1, column])
+            nearness = max(nearness, canvas.nearness[row + 1, column + 1])
+            others = (
+                canvas.owners[row, column + 1],
+                canvas.owners[row + 1, column],
+                canvas.owners[row + 1, column + 1],
+            )
+            if others[0] != owner or others[1] != owner or others[2] != owner:
+                owner, nearness = _most_seen(canvas, ids, row, column)
             found[y, x] = _id_of(owner, ids)
             depth[y, x] = np.float32(1.0) / nearness if nearness > 0.0 else np.float32(np.inf)
+
+
+@part
+def _read_samples(canvas: Canvas, ids: NDArray[np.int32], depth: NDArray[np.float32], found: NDArray[np.int32]) -> None:
+    """The same where a pixel is one sample: several depths are worked out at once."""
+    nearness, owners = canvas.nearness, canvas.owners
+    for y in range(depth.shape[0]):
+        for x in range(depth.shape[1]):
+            depth[y, x] = np.float32(1.0) / nearness[y, x]  # the sky's nearness is 0, and its depth infinite
+        for x in range(depth.shape[1]):
+            found[y, x] = _id_of(owners[y, x], ids)
 
 
 @part

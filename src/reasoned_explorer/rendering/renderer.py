@@ -109,13 +109,16 @@ class Renderer:
         view = projection_of(pose, camera, pitch_rad=pitch_rad, antialias=antialias)
         canvas = self._drawn(view)
         colour = self._shaded(view, canvas, camera)
-        depth_m, instances = self._read(view, canvas, camera)
+        depth_m, instances = self._read(view, canvas)
         return Picture(depth_m, instances, colour)
 
     def ids(self, pose: Pose, camera: Camera, *, pitch_rad: float = 0.0) -> Sighted:
         """Return depth and instance ids alone, which is much faster; see `picture`."""
-        view = projection_of(pose, camera, pitch_rad=pitch_rad)
-        return Sighted(*self._read(view, self._drawn(view), camera))
+        return self.ids_in(projection_of(pose, camera, pitch_rad=pitch_rad))
+
+    def ids_in(self, view: Projection) -> Sighted:
+        """Return depth and instance ids in a view that was projected before; see `ids`."""
+        return Sighted(*self._read(view, self._drawn(view)))
 
     def classes(self, instances: NDArray[np.int32]) -> NDArray[np.uint8]:
         """Return the classes of instance ids, as places in `PICTURE_CLASSES`, in the same shape."""
@@ -129,9 +132,9 @@ class Renderer:
         draw(scene.library, scene.instances, count, view, DENSITY, everything, canvas, scratch)
         return canvas
 
-    def _read(self, view: Projection, canvas: Canvas, camera: Camera) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
-        depth_m = np.empty((camera.height_px, camera.width_px), np.float32)
-        instances = np.empty((camera.height_px, camera.width_px), np.int32)
+    def _read(self, view: Projection, canvas: Canvas) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+        size = view.height // view.samples, view.width // view.samples
+        depth_m, instances = np.empty(size, np.float32), np.empty(size, np.int32)
         read_out(canvas, self.scene.instances.ids, view, depth_m, instances)
         return depth_m, instances
 

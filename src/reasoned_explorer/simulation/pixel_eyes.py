@@ -19,8 +19,6 @@ from reasoned_explorer.world.sight_kernels import AREA, FIRST, LAST, SHAPE
 from reasoned_explorer.world.taxonomy import Ground
 
 if TYPE_CHECKING:
-    from reasoned_explorer.rendering.projection import Projection
-    from reasoned_explorer.rendering.renderer import Sighted
     from reasoned_explorer.rendering.scene import Scene
     from reasoned_explorer.rendering.silhouette_kernels import Sheet
     from reasoned_explorer.simulation.pixel_eyes_kernels import Stage, Tally
@@ -127,23 +125,23 @@ class PixelEyes:
         from reasoned_explorer.simulation.pixel_eyes_kernels import range_ahead
 
         limit_m = self.max_range_m if max_range_m is None else float(max_range_m)
-        drawn = self._renderer.ids(pose, _AHEAD_CAMERA)
-        corridor = float(half_width_m), float(lowest_m), float(highest_m)
         view = projection_of(pose, _AHEAD_CAMERA)
+        drawn = self._renderer.ids_in(view)
+        corridor = float(half_width_m), float(lowest_m), float(highest_m)
         return min(limit_m, float(range_ahead(view, drawn.depth_m, drawn.instances, *corridor)))
 
     def _see(self, pose: Pose, camera: Camera) -> tuple[list[list[float]], list[list[float]], float, list[list[float]]]:
         """As the kernel returns it: objects, ground, share of buildings, buildings."""
-        from reasoned_explorer.rendering.projection import projection_of
+        from reasoned_explorer.rendering.projection import projection_of, resized
         from reasoned_explorer.rendering.renderer import DENSITY
         from reasoned_explorer.simulation.eyes_kernels import in_view
         from reasoned_explorer.simulation.pixel_eyes_kernels import see
 
         plain = Pose(float(pose.x_m), float(pose.y_m), float(pose.z_m), float(pose.heading_rad))
-        coarse, scene = _coarse(camera, self.coarseness), self._renderer.scene
-        drawn: Sighted = self._renderer.ids(plain, coarse)
-        fine: Projection = projection_of(plain, camera)
-        room = self._room(camera)
+        fine = projection_of(plain, camera)
+        coarse = resized(fine, _coarse(camera, self.coarseness))
+        scene, room = self._renderer.scene, self._room(camera)
+        drawn = self._renderer.ids_in(coarse)
         half_fov = 0.5 * float(camera.horizontal_fov_rad)
         size = float(camera.width_px), float(camera.height_px)
         at = plain.x_m, plain.y_m, plain.z_m, plain.heading_rad
@@ -153,7 +151,7 @@ class PixelEyes:
             self._stage,
             scene.library,
             scene.instances,
-            projection_of(plain, coarse),
+            coarse,
             fine,
             drawn.depth_m,
             drawn.instances,
@@ -205,7 +203,7 @@ class PixelEyes:
         return _Room(
             Tally(
                 np.zeros(ids, np.int64),
-                *(np.empty(shape) for shape in (ids, ids, (corners, 2), corners, 4)),
+                *(np.empty(shape) for shape in (ids, ids, (camera.width_px, 2), (corners, 2), corners, 4)),
                 *(
                     np.empty(shape)
                     for shape in ((len(self._world.objects), 7), (3, 6), (len(self._world.buildings), 2))

@@ -64,6 +64,8 @@ class Tally(NamedTuple):
         counts: Coarse pixels, shape (ids,), int64.
         nearest: Least horizontal distance, metres, shape (ids,).
         asides: Sum of the tangents of their bearings, likewise.
+        columns: Of each column of the picture the tangent of its bearing, and how much longer than the depth its
+            distances are, shape (width, 2).
         corners: Corners of an area, ahead and to the right, metres, shape (n, 2).
         crossings: Where a row of the picture crosses an outline, shape (n,).
         row: Of one thing: pixels, silhouette, distance, tangent of the bearing; shape (4,).
@@ -76,6 +78,7 @@ class Tally(NamedTuple):
     counts: NDArray[np.int64]
     nearest: FloatArray
     asides: FloatArray
+    columns: FloatArray
     corners: FloatArray
     crossings: FloatArray
     row: FloatArray
@@ -86,19 +89,22 @@ class Tally(NamedTuple):
 
 @part
 def _count(depth: NDArray[np.float32], ids: NDArray[np.int32], coarse: Projection, tally: Tally) -> None:
-    tally.counts[:] = 0
+    counts, all_nearest, asides, columns = tally.counts, tally.nearest, tally.asides, tally.columns
+    counts[:] = 0
+    for x in range(depth.shape[1]):
+        aside = (x + 0.5 - coarse.centre_x) / coarse.focal
+        columns[x, 0], columns[x, 1] = aside, math.sqrt(1.0 + aside * aside)
     for y in range(depth.shape[0]):
         for x in range(depth.shape[1]):
             thing = ids[y, x]
             if thing <= _GROUND_ID:
                 continue
-            aside = (x + 0.5 - coarse.centre_x) / coarse.focal
-            distance = depth[y, x] * math.sqrt(1.0 + aside * aside)
-            if tally.counts[thing] == 0:
-                tally.nearest[thing], tally.asides[thing] = distance, 0.0
-            tally.counts[thing] += 1
-            tally.nearest[thing] = min(tally.nearest[thing], distance)
-            tally.asides[thing] += aside
+            distance = depth[y, x] * columns[x, 1]
+            if counts[thing] == 0:
+                all_nearest[thing], asides[thing] = distance, 0.0
+            counts[thing] += 1
+            all_nearest[thing] = min(all_nearest[thing], distance)
+            asides[thing] += columns[x, 0]
 
 
 @part

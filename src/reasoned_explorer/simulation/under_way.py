@@ -1,8 +1,10 @@
 """Where a simulated body is while a leg is under way: the leg is worked out when it begins, and told as time passes."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from reasoned_explorer.geometry import Pose, bearing_between_rad, normalise_heading_rad
 from reasoned_explorer.simulation.mishaps import MishapKind, Mishaps
@@ -39,12 +41,7 @@ class UnderWay:
     """
 
     def __init__(self, started_s: float, motion: Motion, start: Pose, body: Body) -> None:
-        points = motion.points
-        if not len(points):
-            points = np.array([(0.0, start.x_m, start.y_m, start.heading_rad)])
-        self._started_s, self._times = started_s, points[:, 0]
-        self._rows = points[:, 1:].copy()
-        self._rows[:, 2] = np.unwrap(points[:, 3])
+        self._started_s, self._motion, self._start = started_s, motion, start
         true, believed = body.true_pose, body.pose
         self._off_m = believed.x_m - true.x_m, believed.y_m - true.y_m
         self._off_rad = bearing_between_rad(true.heading_rad, believed.heading_rad)
@@ -52,15 +49,24 @@ class UnderWay:
     def at(self, now_s: float) -> State:
         """Return where it takes itself to be at a time."""
         elapsed_s = now_s - self._started_s
-        x, y, heading = (float(np.interp(elapsed_s, self._times, column)) for column in self._rows.T)
+        times, rows = self._course
+        x, y, heading = (float(np.interp(elapsed_s, times, column)) for column in rows.T)
         pose = Pose(x + self._off_m[0], y + self._off_m[1], 0.0, normalise_heading_rad(heading + self._off_rad))
-        place = int(np.searchsorted(self._times, elapsed_s, side="right"))
-        if place >= len(self._times) or place == 0:
+        place = int(np.searchsorted(times, elapsed_s, side="right"))
+        if place >= len(times) or place == 0:
             return State(pose)
-        vx, vy, rate = (
-            (self._rows[place] - self._rows[place - 1]) / (self._times[place] - self._times[place - 1])
-        ).tolist()
+        vx, vy, rate = ((rows[place] - rows[place - 1]) / (times[place] - times[place - 1])).tolist()
         return State(pose, float(np.hypot(vx, vy)), rate)
+
+    @cached_property
+    def _course(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Seconds since the start, and x, y and heading then, which goes on beyond a full turn; most legs need none."""
+        points, start = self._motion.points, self._start
+        if not len(points):
+            points = np.array([(0.0, start.x_m, start.y_m, start.heading_rad)])
+        rows = points[:, 1:].copy()
+        rows[:, 2] = np.unwrap(points[:, 3])
+        return points[:, 0], rows
 
 
 def told(state: State, mishaps: Mishaps, now_s: float) -> Telemetry:

@@ -26,7 +26,7 @@ from reasoned_explorer.minds.embedded.reading import (
     read_scene,
 )
 from reasoned_explorer.minds.embedded.relevance import Senses
-from reasoned_explorer.model.draws import key_of
+from reasoned_explorer.model.draws import further, key_of
 
 #: About how many words an imagined scene has (the authors' prompt asks for 50).
 WORDS = 50
@@ -82,13 +82,13 @@ class _Thing:
 class _Outlook:
     """What a caption leaves to be seen further on, whatever the draw."""
 
-    intro: str
+    opening: tuple[str, ...]
+    room: int
     things: tuple[_Thing, ...]
     grounds: tuple[str | None, str | None, str | None]
     background: tuple[_Thing, ...]
     chances: tuple[float, ...]
     names: tuple[str, ...]
-    blocked: bool
 
 
 @cache
@@ -186,12 +186,17 @@ def _outlook(text: str, senses: Senses) -> _Outlook:
     things.sort(key=lambda thing: _ORDER[thing.distance])
     news = _news(senses)
     grounds = (reading.ground_left, reading.ground_ahead or reading.ground_here, reading.ground_right)
+    opening = tuple(sentence for sentence in (intro, _BLOCKED if reading.blocked else "") if sentence)
+    room = WORDS - sum(_words_of(sentence) for sentence in opening)
     return _Outlook(
-        intro, tuple(things[:7]), grounds, tuple(background[:2]), _chances(reading, news), news.names, reading.blocked
+        opening, room, tuple(things[:7]), grounds, tuple(background[:2]), _chances(reading, news), news.names
     )
 
 
-@lru_cache(maxsize=65536)
+def _words_of(sentence: str) -> int:
+    return sentence.count(" ") + 1
+
+
 def _sentence(thing: _Thing, distance: int) -> str:
     verb = "there are" if thing.many else "there is"
     comma = "," if distance == MIDDLE and thing.side is not None else ""
@@ -234,8 +239,8 @@ class _Draws:
     Multiplier and increment are those of Knuth's MMIX; only the upper bits are used.
     """
 
-    def __init__(self, seed: int, key: tuple[int, ...], child: int) -> None:
-        self._state = key_of(seed, *key, child)
+    def __init__(self, key: int) -> None:
+        self._state = key
 
     def next(self) -> float:
         self._state = (self._state * 6364136223846793005 + 1442695040888963407) & 0xFFFFFFFFFFFFFFFF
@@ -253,9 +258,10 @@ def imagine_texts(text: str, *, seed: int, key: tuple[int, ...], count: int, sen
         senses: What is known of places.
     """
     outlook = _outlook(text, senses)
+    scene_key = key_of(seed, *key)
     made: list[str] = []
     for child in range(count):
-        draws = _Draws(seed, key, child)
+        draws = _Draws(further(scene_key, child))
         imagined = _child(outlook, draws, child / count)
         for _ in range(8):
             if imagined not in made:
@@ -274,19 +280,19 @@ def _child(outlook: _Outlook, draws: _Draws, offset: float) -> str:
     if draws.next() > _GROUND_GOES_ON and (left or right):
         ahead = left or right
     ground = _ground_sentence(ahead, None, None)
-    said: list[str] = []
-    sentences = [sentence for sentence in (outlook.intro, _BLOCKED if outlook.blocked else "") if sentence]
-    room = WORDS - sum(sentence.count(" ") + 1 for sentence in (*sentences, new, ground))
+    said = ""
+    sentences = list(outlook.opening)
+    room = outlook.room - _words_of(new) - _words_of(ground)
     for thing in outlook.things:
         moved = _moved(thing, draws.next())
-        if moved is None or any(thing.name in earlier for earlier in said):
+        if moved is None or thing.name in said:
             continue
         sentence = _sentence(thing, moved)
-        room -= sentence.count(" ") + 1
+        room -= _words_of(sentence)
         if room < 0:
             break
         sentences.append(sentence)
-        said.append(thing.relation)
+        said = f"{said}{thing.relation}|"
     sentences.append(new)
     if another and room >= 9:
         sentences.append(_sentence(second, FAR))
@@ -298,7 +304,7 @@ def _child(outlook: _Outlook, draws: _Draws, offset: float) -> str:
         if room >= 8:
             room -= 8
             sentences.append(_sentence(thing, FAR if draws.next() < _COMES_OUT_OF_BACKGROUND else BACKGROUND))
-    return " ".join(sentence for sentence in sentences if sentence)
+    return " ".join([sentence for sentence in sentences if sentence])
 
 
 def _news_of(outlook: _Outlook, draws: _Draws, offset: float) -> tuple[_Thing, _Thing]:
