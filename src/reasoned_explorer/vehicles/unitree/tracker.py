@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from reasoned_explorer.geometry import Pose
 from reasoned_explorer.model import LegOutcome, PartError
 from reasoned_explorer.vehicles.control.follower import Command, FollowerSettings, Phase, PidFollower
+from reasoned_explorer.vehicles.control.readiness import make_ready
 from reasoned_explorer.vehicles.positioning.fix import Fix
 from reasoned_explorer.vehicles.profile import VehicleProfile
 from reasoned_explorer.vehicles.unitree.legs import LegLog
@@ -81,6 +82,7 @@ class Tracker:
         whereabouts: Whereabouts,
         source: PositionSource | None,
     ) -> None:
+        make_ready()
         self.robot, self.settings, self.whereabouts = robot, settings, whereabouts
         most = robot.cut(Velocity(profile.speed_mps)).forward_mps
         fastest = robot.cut(Velocity(0.0, 0.0, profile.turn_rate_radps)).turn_radps
