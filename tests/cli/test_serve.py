@@ -212,3 +212,28 @@ def test_what_cannot_be_asked_of_a_vehicle_is_told(arguments: list[str], what: s
     assert code == 2, shown
     assert what in shown
     assert not list(Path().iterdir())
+
+
+@pytest.mark.parametrize(
+    ("as_", "server"),
+    [
+        ("mavlink", "reasoned_explorer.serving.mavlink.server.MavlinkServer"),
+        ("airsim", "reasoned_explorer.serving.airsim.server.AirSimServer"),
+    ],
+)
+def test_nobody_is_answered_before_all_is_compiled(as_: str, server: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is compiled while a driver waits would seem to it a lost link."""
+
+    class Warm(Exception):
+        pass
+
+    def warm_up(_: object) -> None:
+        raise Warm
+
+    async def start(*_: object) -> int:
+        raise AssertionError("it listens before it is ready")
+
+    monkeypatch.setattr(f"{server}.warm_up", warm_up)
+    monkeypatch.setattr(f"{server}.start", start)
+    result = CliRunner().invoke(app, ["serve", "--as", as_, "--world", "park:1@150", "--port", "0"])
+    assert isinstance(result.exception, Warm)

@@ -129,7 +129,7 @@ def serve_from_options(options: ServeOptions) -> None:
         if options.as_ == "mavlink":
             from reasoned_explorer.serving.mavlink.server import MavlinkServer
 
-            return MavlinkServer(
+            autopilot = MavlinkServer(
                 atlas,
                 start,
                 flavour=options.flavour,
@@ -139,6 +139,8 @@ def serve_from_options(options: ServeOptions) -> None:
                 noise=options.noise,
                 seed=options.seed,
             )
+            autopilot.warm_up()
+            return autopilot
         made = AirSimServer(
             atlas,
             start,
