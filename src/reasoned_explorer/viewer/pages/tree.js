@@ -72,6 +72,9 @@ export function Tree({ step, range }) {
   const [open, setOpen] = useState(new Set());
   const [active, setActive] = useState(roots[0]?.id ?? null);
   const wanted = useRef(false);
+  // Keys may come faster than the page is drawn: each acts on what the one before it left.
+  const now = useRef({});
+  now.current = { open, active };
   useEffect(() => {
     // The branch that was chosen, or the best one, is unfolded at first.
     const chosen = step.views.find((view) => view.frontier !== null && view.frontier === step.choice?.frontier);
@@ -86,31 +89,37 @@ export function Tree({ step, range }) {
   });
   if (!step.tree.length) return html`<p class="soft small pad">Nothing was imagined in this step.</p>`;
 
-  const toggle = (id, unfold = !open.has(id)) => {
-    const next = new Set(open);
+  const openAll = (ids) => {
+    now.current.open = ids;
+    setOpen(ids);
+  };
+  const activate = (id) => {
+    now.current.active = id;
+    setActive(id);
+  };
+  const toggle = (id, unfold = !now.current.open.has(id)) => {
+    const next = new Set(now.current.open);
     if (unfold) next.add(id);
     else next.delete(id);
-    setOpen(next);
+    openAll(next);
   };
-  const visible = [];
-  const walk = (places, parent) => {
-    for (const place of places) {
-      visible.push({ place, parent });
-      if (open.has(place.id)) walk(place.children, place);
-    }
-  };
-  walk(roots, null);
+  const visibleOf = (places, parent = null) =>
+    places.flatMap((place) => [
+      { place, parent },
+      ...(now.current.open.has(place.id) ? visibleOf(place.children, place) : []),
+    ]);
   const all = (unfold) => {
     const ids = [];
     const gather = (places) => places.forEach((place) => (ids.push(place.id), gather(place.children)));
     gather(roots);
-    setOpen(new Set(unfold ? ids : []));
+    openAll(new Set(unfold ? ids : []));
   };
   const keys = (event) => {
-    const at = visible.findIndex(({ place }) => place.id === active);
+    const visible = visibleOf(roots);
+    const at = visible.findIndex(({ place }) => place.id === now.current.active);
     const { place, parent } = visible[at] ?? {};
     const go = (to) => {
-      if (to) setActive(to.id);
+      if (to) activate(to.id);
       wanted.current = true;
     };
     const moves = {
@@ -118,8 +127,8 @@ export function Tree({ step, range }) {
       ArrowUp: () => go(visible[at - 1]?.place),
       Home: () => go(visible[0]?.place),
       End: () => go(visible.at(-1)?.place),
-      ArrowRight: () => (place.children.length && !open.has(place.id) ? toggle(place.id, true) : go(place.children[0])),
-      ArrowLeft: () => (open.has(place.id) && place.children.length ? toggle(place.id, false) : go(parent)),
+      ArrowRight: () => (place.children.length && !now.current.open.has(place.id) ? toggle(place.id, true) : go(place.children[0])),
+      ArrowLeft: () => (now.current.open.has(place.id) && place.children.length ? toggle(place.id, false) : go(parent)),
       Enter: () => place.children.length && toggle(place.id),
       " ": () => place.children.length && toggle(place.id),
       "*": () => all(true),
@@ -133,7 +142,7 @@ export function Tree({ step, range }) {
     <div class="row tree-tools"><span class="soft tiny spread">${step.tree.length} imagined scenes, scored from 1 to 5</span>
       <button class="quiet small" onClick=${() => all(true)}>Unfold all</button><button class="quiet small" onClick=${() => all(false)}>Fold</button></div>
     <ul class="tree" role="tree" aria-label="Imagined scenes" ref=${box} onKeyDown=${keys}>
-      ${roots.map((place) => html`<${Branch} key=${place.id} ...${{ place, depth: 1, step, range, open, active, toggle, focus: setActive }} />`)}
+      ${roots.map((place) => html`<${Branch} key=${place.id} ...${{ place, depth: 1, step, range, open, active, toggle, focus: activate }} />`)}
     </ul>
   </div>`;
 }
