@@ -83,7 +83,8 @@ export function Tree({ step, range }) {
     setActive(roots[0]?.id ?? null);
   }, [step]);
   useEffect(() => {
-    if (!wanted.current) return;
+    // Where a key has gone on meanwhile, what is drawn then takes the focus.
+    if (!wanted.current || active !== now.current.active) return;
     wanted.current = false;
     box.current?.querySelector('[role="treeitem"][tabindex="0"]')?.focus();
   });
