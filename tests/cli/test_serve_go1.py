@@ -22,8 +22,11 @@ from reasoned_explorer.cli.app import app
 from reasoned_explorer.evaluation.mission import Mission, MissionSettings
 from reasoned_explorer.exploration.settings import ExplorerSettings
 from reasoned_explorer.geometry import Pose
+from reasoned_explorer.serving.go1.server import Go1Server
+from reasoned_explorer.serving.go1.walker import Walker
 from reasoned_explorer.simulation.pixel_eyes import PixelEyes
 from reasoned_explorer.simulation.vehicle import SimulatedVehicle
+from reasoned_explorer.simulation.walking import SatelliteFix
 from reasoned_explorer.world.atlas import Atlas
 from reasoned_explorer.world.opening import open_world
 from tests.vehicles.cameras.served import RED, served_camera
@@ -192,3 +195,25 @@ def test_a_port_of_its_receiver_that_is_taken_is_told() -> None:
     assert code == 2, shown
     assert f"127.0.0.1:{port} cannot be listened on" in shown
     assert "--gps-port 0" in shown
+
+
+def test_its_receiver_has_spoken_for_nothing_before_anybody_listens(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a fix needs is compiled then: later it would hold the robot up for a second."""
+    done: list[str] = []
+    tick = Walker.tick
+
+    def noted(walker: Walker) -> SatelliteFix | None:
+        fix = tick(walker)
+        if fix is not None:
+            done.append("says where it is")
+        return fix
+
+    async def start(*_: object) -> int:
+        done.append("listens")
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Walker, "tick", noted)
+    monkeypatch.setattr(Go1Server, "start", start)
+    CliRunner().invoke(app, ["serve", "--as", "go1", "--world", "park:1@150", "--port", "0", "--gps-port", "0"])
+    assert done[0] == "says where it is"
+    assert done[-1] == "listens"

@@ -21,7 +21,7 @@ from reasoned_explorer.serving.background import Served
 from reasoned_explorer.serving.go1.gnss import GnssServer
 from reasoned_explorer.serving.go1.server import Go1Server
 from reasoned_explorer.serving.go1.walker import Walker
-from reasoned_explorer.simulation.sensors import sensor_noise
+from reasoned_explorer.simulation.sensors import TICK_HZ, sensor_noise
 from reasoned_explorer.simulation.vehicle import check_start
 from reasoned_explorer.vehicles import VehicleProfile
 from reasoned_explorer.vehicles.mavlink.flavours import FLAVOURS
@@ -214,7 +214,8 @@ def go1_server(
     """
     trial = Walker(atlas, profile, start)
     trial.obey(HighCommand.walking(forward_mps=0.1))
-    trial.tick()  # what moves the body is compiled now, which takes a while on a fresh installation
+    for _ in range(TICK_HZ):  # what moves the body and what its receiver says are compiled now, before anybody listens
+        trial.tick()
     walker = Walker(atlas, profile, start, noise=options.noise, seed=options.seed)
     gnss = GnssServer(walker.noise, origin=atlas.world.origin)
     return Go1Server(walker, gnss=gnss, lockstep=is_stepped, gnss_port=options.receiver_port)
