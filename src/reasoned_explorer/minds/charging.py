@@ -21,6 +21,7 @@ async def charge_calls(
     if not keys:
         return
     seconds = context.latency.batch_s(role, context.seed, keys)
+    # As records keep them (`CallRecord.rounded`): thousands need not be made a second time.
     started_s = round(context.clock.now_s(), 6)
     context.ledger.add_all(
         [

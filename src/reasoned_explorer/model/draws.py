@@ -34,14 +34,14 @@ def key_of(seed: int, *keys: int | str) -> int:
     """
     state = _mix((seed + _GOLDEN) & _MASK)
     for key in keys:
-        part = _word_key(key) if isinstance(key, str) else key
-        state = _mix((state + _GOLDEN + part * 0xD1342543DE82EF95) & _MASK)
+        state = further(state, key)
     return state
 
 
-def further(key: int, part: int) -> int:
+def further(key: int, part: int | str) -> int:
     """Return ``key_of(seed, *keys, part)`` for ``key = key_of(seed, *keys)``."""
-    return _mix((key + _GOLDEN + part * 0xD1342543DE82EF95) & _MASK)
+    number = _word_key(part) if isinstance(part, str) else part
+    return _mix((key + _GOLDEN + number * 0xD1342543DE82EF95) & _MASK)
 
 
 def uniform(seed: int, *keys: int | str) -> float:
@@ -60,13 +60,10 @@ def normals(seed: int, keys: Iterable[tuple[int | str, ...]]) -> list[float]:
     shared: tuple[int | str, ...] = ()
     state = key_of(seed)
     for key in keys:
-        if not key or isinstance(key[-1], str):
-            found.append(normal(seed, *key))
-            continue
         if key[:-1] != shared:
             shared = key[:-1]
             state = key_of(seed, *shared)
-        found.append(_normal(further(state, key[-1])))
+        found.append(_normal(further(state, key[-1]) if key else state))
     return found
 
 

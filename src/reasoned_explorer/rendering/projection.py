@@ -63,17 +63,23 @@ def projection_of(pose: Pose, camera: Camera, *, pitch_rad: float = 0.0, antiali
             [sin_h * cos_p, cos_h * cos_p, sin_p],
         ]
     )
-    width, height = camera.width_px * antialias, camera.height_px * antialias
-    focal = 0.5 * width / math.tan(0.5 * camera.horizontal_fov_rad)
-    eye = np.array([pose.x_m, pose.y_m, pose.z_m], np.float64)
-    return Projection(eye, axes, focal, 0.5 * width, 0.5 * height, width, height, antialias)
+    return _through(camera, np.array([pose.x_m, pose.y_m, pose.z_m], np.float64), axes, antialias)
 
 
 def resized(view: Projection, camera: Camera) -> Projection:
-    """Return the projection of another camera in the same place, one sample to a pixel; it must be one of that view."""
-    width, height = camera.width_px, camera.height_px
+    """Return the projection of another camera that stands and looks as a view does, one sample to a pixel.
+
+    Args:
+        view: Where it is.
+        camera: Its picture and field of view, in the ranges of `projection_of`: they are not looked at again.
+    """
+    return _through(camera, view.eye, view.axes, 1)
+
+
+def _through(camera: Camera, eye: NDArray[np.float64], axes: NDArray[np.float64], antialias: int) -> Projection:
+    width, height = camera.width_px * antialias, camera.height_px * antialias
     focal = 0.5 * width / math.tan(0.5 * camera.horizontal_fov_rad)
-    return Projection(view.eye, view.axes, focal, 0.5 * width, 0.5 * height, width, height, 1)
+    return Projection(eye, axes, focal, 0.5 * width, 0.5 * height, width, height, antialias)
 
 
 def _faults(pose: Pose, camera: Camera, pitch_rad: float, antialias: int) -> list[Fault]:
