@@ -190,6 +190,15 @@ def test_whatever_an_autopilot_says_the_driver_moves_nothing_and_tells_only_numb
     assert told.battery is None or 0.0 <= told.battery <= 1.0
 
 
+def test_a_fix_that_comes_before_the_machine_s_own_time_is_not_as_old_as_the_machine():
+    mavlink, told = dialect(), Telemetry()
+    told.take(mavlink.MAVLink_gps_raw_int_message(3_600_000_000, 3, 1, 1, 0, 70, 120, 0, 0, 18), 0.0)
+    told.take(mavlink.MAVLink_attitude_message(3_600_100, 0.0, 0.0, 0.0, 0.0, 0.0, 0.1), 0.0)
+    assert told.fix_boot_s is None
+    told.take(mavlink.MAVLink_gps_raw_int_message(3_600_000_000, 3, 1, 1, 0, 70, 120, 0, 0, 18), 0.0)
+    assert told.fix_boot_s == 3600.1
+
+
 def test_the_same_fix_told_again_grows_old():
     mavlink, told = dialect(), Telemetry()
 

@@ -178,6 +178,8 @@ class Telemetry:
         satellites = None if message.satellites_visible == 255 else message.satellites_visible
         error_m = None if message.h_acc in {0, _NO_VALUE_32} else message.h_acc / 1000.0
         self.position = PositionQuality(message.fix_type, satellites, error_m, self.position.filter_is_good)
+        if math.isinf(self.boot_at_s):
+            return  # its own time was not heard yet: the fix would be taken to be as old as the machine has been on
         # The same fix told again is no newer; who tells no time tells it anew.
         if message.fix_type >= _2D_FIX and (message.time_usec != self._fix_us or message.time_usec == 0):
             self._fix_us, self.fix_boot_s = message.time_usec, self.boot_s
