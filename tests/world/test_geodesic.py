@@ -1,5 +1,6 @@
 """Shortest ways, checked against visibility graphs made with shapely."""
 
+import dataclasses
 import heapq
 import itertools
 import math
@@ -265,6 +266,15 @@ def test_a_field_falls_along_ways(court):
     both = np.isfinite(near) & np.isfinite(far)
     # Between neighbours the distance changes by no more than the way between them (and what any-angle ways err by).
     assert np.abs(near[both] - far[both]).max() < 1.5
+
+
+def test_a_field_reads_no_length_of_a_cell_that_was_not_reached(court):
+    field_ = court.field_m((50, 40), traveller=WALKER, max_m=20.0)
+    # What stands in memory there before is anything at all: here what cannot even be cast without a warning.
+    signalling = np.uint32(0x7FA00000).view(np.float32)
+    spoilt = dataclasses.replace(field_, lengths=np.where(field_.links != 0, field_.lengths, signalling))
+    np.testing.assert_array_equal(spoilt.lengths_m(), field_.lengths_m())
+    assert np.isinf(spoilt.lengths_m()).any()
 
 
 def test_a_field_ends_where_it_should(court):

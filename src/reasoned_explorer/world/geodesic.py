@@ -82,7 +82,9 @@ class DistanceField:
 
     def lengths_m(self) -> FloatArray:
         """Return the distance of every cell, metres, shape (rows, cols); infinite where there is no way."""
-        lengths = np.where(self.links != 0, self.lengths.astype(np.float64) * self.space.grid.cell_m, np.inf)
+        reached = self.links != 0
+        lengths = np.full(self.links.shape, np.inf)
+        lengths[reached] = self.lengths[reached].astype(np.float64) * self.space.grid.cell_m
         return lengths.reshape(self.space.grid.shape)
 
     def _look_up(self, points_m: FloatArray) -> tuple[FloatArray, FloatArray]:
