@@ -50,15 +50,13 @@ class Canvas(NamedTuple):
         nearness: 1 / depth, shape (height, width), float32; 0 is the sky.
         owners: The instance, `SKY` or `GROUND`, shape (height, width), int32.
         triangles: Its triangle in the library, shape (height, width), int32.
-        farthest: The least nearness in each block, shape (⌈height / BLOCK⌉, ⌈width / BLOCK⌉), float32.
-        stale: Whether a block's ``farthest`` may be too small, likewise, uint8.
+        farthest: No more than the least nearness in each block, shape (⌈height / BLOCK⌉, ⌈width / BLOCK⌉), float32.
     """
 
     nearness: NDArray[np.float32]
     owners: NDArray[np.int32]
     triangles: NDArray[np.int32]
     farthest: NDArray[np.float32]
-    stale: NDArray[np.uint8]
 
 
 class Scratch(NamedTuple):
@@ -185,22 +183,23 @@ def _last_sample(position: float, count: int) -> int:
 @part
 def _hidden(canvas: Canvas, rectangles: Ints, k: int, nearest: float) -> bool:
     """Whether all that a rectangle covers is nearer than ``nearest`` already."""
-    farthest, stale, nearness = canvas.farthest, canvas.stale, canvas.nearness
-    height, width = nearness.shape
-    for row in range(rectangles[k, 2] >> SHIFT, (rectangles[k, 3] >> SHIFT) + 1):
-        for column in range(rectangles[k, 0] >> SHIFT, (rectangles[k, 1] >> SHIFT) + 1):
+    farthest, nearness = canvas.farthest, canvas.nearness
+    first_x, last_x, first_y, last_y = rectangles[k, 0], rectangles[k, 1], rectangles[k, 2], rectangles[k, 3]
+    for row in range(first_y >> SHIFT, (last_y >> SHIFT) + 1):
+        for column in range(first_x >> SHIFT, (last_x >> SHIFT) + 1):
             if farthest[row, column] >= nearest:
                 continue
-            if not stale[row, column]:
-                return False
+            # Of a block that is covered in part only that part counts: it is sooner hidden than the whole.
+            left, right = max(first_x, column * BLOCK), min(last_x, column * BLOCK + BLOCK - 1)
+            top, bottom = max(first_y, row * BLOCK), min(last_y, row * BLOCK + BLOCK - 1)
             least = np.float32(math.inf)
-            for y in range(row * BLOCK, min(height, row * BLOCK + BLOCK)):
-                for x in range(column * BLOCK, min(width, column * BLOCK + BLOCK)):
+            for y in range(top, bottom + 1):
+                for x in range(left, right + 1):
                     least = min(least, nearness[y, x])
-            farthest[row, column] = least
-            stale[row, column] = 0
-            if least < nearest:
-                return False
+                if least < nearest:
+                    return False
+            if right - left == BLOCK - 1 and bottom - top == BLOCK - 1:
+                farthest[row, column] = least
     return True
 
 
@@ -311,17 +310,18 @@ def _fill_triangle(
             edge1 = ax1 * across + rest1
             edge2 = ax2 * across + rest2
             near = np.float32((edge0 + edge1 + edge2) * inverse)
-            # One branch for all: which of them fails is anyone's guess, for the processor too.
-            if (
+            # No branch: whether a sample is covered is anyone's guess, for the processor too.
+            before = nearness[y, x]
+            covered = (
                 (edge0 >= least0)
                 & (edge1 >= least1)
                 & (edge2 >= least2)
-                & (near > nearness[y, x] * _NEARER)
+                & (near > before * _NEARER)
                 & (near <= _MOST_NEARNESS)
-            ):
-                nearness[y, x] = near
-                owners[y, x] = owner
-                triangles[y, x] = triangle
+            )
+            nearness[y, x] = near if covered else before
+            owners[y, x] = owner if covered else owners[y, x]
+            triangles[y, x] = triangle if covered else triangles[y, x]
 
 
 @kernel
@@ -461,12 +461,10 @@ def draw(
         scratch: As `gather` leaves it; its ``levels`` say afterwards what was drawn.
     """
     _fill_background(view, canvas)
-    farthest, stale = canvas.farthest, canvas.stale
-    rectangles, levels, matrix = scratch.rectangles, scratch.levels, scratch.matrix
+    farthest, rectangles, levels, matrix = canvas.farthest, scratch.rectangles, scratch.levels, scratch.matrix
     for row in range(farthest.shape[0]):
         for column in range(farthest.shape[1]):
             farthest[row, column] = 0.0
-            stale[row, column] = 1
     for i in range(levels.shape[0]):
         levels[i] = -1
     pixels = view.focal / view.samples
@@ -483,9 +481,6 @@ def draw(
         levels[i] = level
         _matrix_of(instances, i, view, matrix)
         _draw_level(library, library.prototypes[prototype, 0] + level, matrix, i, canvas, scratch.corners)
-        for row in range(rectangles[k, 2] >> SHIFT, (rectangles[k, 3] >> SHIFT) + 1):
-            for column in range(rectangles[k, 0] >> SHIFT, (rectangles[k, 1] >> SHIFT) + 1):
-                stale[row, column] = 1
 
 
 @kernel

@@ -40,5 +40,4 @@ def new_canvas(height: int, width: int) -> Canvas:
         np.empty((height, width), np.int32),
         np.empty((height, width), np.int32),
         np.empty(blocks, np.float32),
-        np.empty(blocks, np.uint8),
     )

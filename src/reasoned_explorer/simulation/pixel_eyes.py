@@ -197,7 +197,6 @@ class PixelEyes:
             np.empty(size, np.int32),
             np.empty(size, np.int32),
             np.empty((1, 1), np.float32),
-            np.empty((1, 1), np.uint8),
         )
         vertices = int(scene.library.levels[:, 1].max(initial=1))
         return _Room(
