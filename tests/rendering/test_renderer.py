@@ -29,6 +29,16 @@ def digest(picture: Picture) -> str:
     return hashlib.sha256(parts).hexdigest()
 
 
+@pytest.mark.parametrize(("aside_m", "is_drawn"), [(1.63, False), (2.2, True)])
+def test_what_a_wall_hides_is_not_drawn_though_its_block_is_partly_free(aside_m: float, is_drawn: bool) -> None:
+    # The wall ends within the block of samples from 40 to 47; the post stands there, behind the wall or beside it.
+    wall, post = box((1.8, 0.2, 3.0)), box((0.2, 0.2, 1.0))
+    renderer = Renderer(scene_of([(wall, (0.0, -2.9, 0.0)), (post, (aside_m, 0.0, 0.0))]))
+    picture = renderer.ids(EYE, CAMERA)
+    assert (renderer._room().scratch.levels[1] >= 0) == is_drawn
+    assert (FIRST + 1 in picture.instances) == is_drawn
+
+
 def test_a_box_stands_where_it_is() -> None:
     renderer = Renderer(scene_of([(box((2.0, 2.0, 2.0)), (0.0, 0.0, 0.0)), (box(), (3.0, 4.0, 0.0))]))
     picture = renderer.picture(EYE, CAMERA)
